@@ -8,7 +8,7 @@ use super::checkpoint::{RenderId, read_checkpoint, write_checkpoint};
 use super::error::{SaveError, reason};
 use super::scene_file::{parse_scene, read_text, write_scene};
 use super::{Problem, atomic};
-use crate::raytrace::{self, Film, GeometryCache, Layer, Settings};
+use crate::raytrace::{self, Film, GeometryCache, Layer, Purpose, Settings};
 use crate::scene::{Assets, Scene};
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
@@ -91,7 +91,10 @@ pub(super) fn read(folder: &Path, assets: &Assets) -> Result<Option<KeptPicture>
     let prepared = raytrace::prepare_kept(&scene, assets, &cache).map_err(|error| error.to_string())?;
     let prepared = match names(prepared.layers()) == header.layers {
         true => prepared,
-        false => raytrace::prepare_shared(&scene, assets, &cache).map_err(|error| error.to_string())?,
+        false => {
+            let purpose = Purpose { shares_layers: true, ..Purpose::default() };
+            raytrace::prepare_for(&scene, assets, purpose, &cache).map_err(|error| error.to_string())?
+        }
     };
     let Header { settings, is_complete, .. } = header;
     let film = raytrace::empty_film(&prepared, &settings).with_stored(&mut &bytes[..]);
@@ -127,15 +130,13 @@ fn render_id(scene: &Scene, header: &str) -> RenderId {
 mod tests {
     use super::*;
     use crate::io::presets;
-    use crate::raytrace::{RenderControl, prepare, prepare_shared, render};
+    use crate::raytrace::{RenderControl, prepare_for, render};
     use std::ops::ControlFlow;
 
     fn picture(spp: u32, shared: bool) -> (KeptPicture, Assets) {
         let loaded = presets().iter().find(|preset| preset.file_name.starts_with("product")).unwrap().load().unwrap();
-        let prepared = match shared {
-            true => prepare_shared(&loaded.scene, &loaded.assets, &GeometryCache::default()),
-            false => prepare(&loaded.scene, &loaded.assets),
-        };
+        let purpose = Purpose { shares_layers: shared, ..Purpose::default() };
+        let prepared = prepare_for(&loaded.scene, &loaded.assets, purpose, &GeometryCache::default());
         let settings = Settings { width: 40, height: 30, spp, aovs: true, ..Settings::default() };
         let film = render(&prepared.unwrap(), &settings, &RenderControl::new(), &mut |_| ControlFlow::Continue(()));
         let (film, scene) = (Arc::new(film), Arc::new(loaded.scene));

@@ -35,10 +35,12 @@ pub struct Developed<I> {
 }
 
 impl<I> Developed<I> {
-    /// Returns how long the next film of a render should still wait that has run for some time: development takes the
-    /// processors from tracing.
-    pub fn pause(&self, rendered: Duration) -> Duration {
-        pause_after(self.took, rendered).saturating_sub(self.at.elapsed())
+    /// Returns how long the next film, of so many pixels, of a render should still wait that has run for some time:
+    /// development takes the processors from tracing.
+    pub fn pause(&self, pixels: u64, rendered: Duration) -> Duration {
+        let own = u64::from(self.picture.width) * u64::from(self.picture.height);
+        let next_takes = self.took.mul_f64(pixels as f64 / own.max(1) as f64);
+        pause_after(next_takes, rendered).saturating_sub(self.at.elapsed())
     }
 }
 
@@ -49,7 +51,7 @@ const DEVELOPMENTS_APART: u32 = 4;
 const PART_APART: f64 = 0.1;
 const LONGEST_APART: Duration = Duration::from_secs(10);
 
-/// Returns the pause after a development in a render that has run for some time.
+/// Returns the pause before a development that takes so long in a render that has run for some time.
 fn pause_after(took: Duration, rendered: Duration) -> Duration {
     (took * DEVELOPMENTS_APART).max(rendered.mul_f64(PART_APART).min(LONGEST_APART))
 }
@@ -266,6 +268,23 @@ mod tests {
         assert_eq!(pause(0.5, 1.0), 2.0, "a development takes a fifth of the time");
         assert_eq!(pause(0.5, 60.0), 6.0, "less in a long render, which changes slowly");
         assert_eq!(pause(0.5, 6000.0), 10.0, "and is still seen to go on");
+    }
+
+    #[test]
+    fn the_pause_after_a_coarse_picture_is_that_of_the_whole_ones_development() {
+        let developed = Developed {
+            film: Weak::new(),
+            picture: Arc::new(Picture { width: 100, height: 50, rgb: Vec::new() }),
+            noisy: None,
+            denoiser: None,
+            image: (),
+            spp: 1,
+            method: "path",
+            took: Duration::from_secs(1),
+            at: Instant::now(),
+        };
+        let pause = |pixels| developed.pause(pixels, Duration::from_secs(1)).as_secs_f64();
+        assert!((3.0..=4.0).contains(&pause(5000)) && (15.0..=16.0).contains(&pause(20_000)));
     }
 
     #[test]

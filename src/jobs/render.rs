@@ -4,7 +4,9 @@
 use super::memory::{self, Bytes, RenderMemory};
 use super::monitor::RenderMonitor;
 use crate::io;
-use crate::raytrace::{self, Film, GeometryCache, PrepareError, RenderControl, RenderScene, Settings, Shortcut};
+use crate::raytrace::{
+    self, Film, GeometryCache, PrepareError, Purpose, RenderControl, RenderScene, Settings, Shortcut,
+};
 use crate::scene::{Assets, Scene};
 use rayon::ThreadPool;
 use std::ops::ControlFlow;
@@ -152,12 +154,9 @@ pub(super) enum Layers {
 }
 
 /// Prepares the scene by a function, with the plan that the input asks for.
-fn prepared_with(
-    input: &RenderInput<'_>,
-    prepare: fn(&Scene, &Assets, &GeometryCache) -> Result<RenderScene, PrepareError>,
-    pool: &ThreadPool,
-) -> Result<RenderScene, PrepareError> {
-    let mut prepared = pool.install(|| prepare(input.scene, input.assets, input.cache))?;
+fn prepared_with(input: &RenderInput<'_>, shares_layers: bool, pool: &ThreadPool) -> Result<RenderScene, PrepareError> {
+    let purpose = Purpose { picture: Some((input.settings.width, input.settings.height)), shares_layers };
+    let mut prepared = pool.install(|| raytrace::prepare_for(input.scene, input.assets, purpose, input.cache))?;
     if !input.without.is_empty() {
         let plan = input.without.iter().fold(prepared.plan().clone(), |plan, shortcut| plan.without(*shortcut));
         prepared.set_plan(plan);
@@ -173,7 +172,7 @@ pub(super) fn prepared(
     observe: &mut (dyn FnMut(RenderStage<'_>) + Send),
 ) -> Result<(RenderScene, f64), RenderError> {
     let started = Instant::now();
-    let mut prepared = prepared_with(input, raytrace::prepare_kept, pool)?;
+    let mut prepared = prepared_with(input, false, pool)?;
     // Share layers, or refuse, if the memory does not suffice
     let need = |scene: &RenderScene| match layers {
         Layers::OfPart => memory::needed_by_part(input.settings, scene.layers().len()),
@@ -181,7 +180,7 @@ pub(super) fn prepared(
     };
     let mut memory = RenderMemory { need: need(&prepared), free: input.memory.or_else(memory::free), unshared: None };
     if memory.is_too_little() && layers == Layers::OneEach {
-        prepared = prepared_with(input, raytrace::prepare_shared, pool)?;
+        prepared = prepared_with(input, true, pool)?;
         memory = RenderMemory { need: need(&prepared), unshared: Some(memory.need), ..memory };
     }
     if memory.is_too_little() && layers != Layers::Stored {
@@ -203,7 +202,7 @@ fn stored_film(
     if let Ok(film) = film(scene) {
         return Ok(film);
     }
-    *scene = prepared_with(input, raytrace::prepare_shared, pool)?;
+    *scene = prepared_with(input, true, pool)?;
     film(scene).map_err(|error| RenderError::Checkpoint(io::reason(&error)))
 }
 

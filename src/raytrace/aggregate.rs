@@ -8,8 +8,9 @@
 
 use super::blas::Blas;
 use super::bvh::{self, TraversalStack, WideBvh};
-use super::geometry::{Instance, MeshGeometry, PassedBodies, SurfaceInteraction};
+use super::geometry::{Instance, MeshGeometry, SurfaceInteraction};
 use super::simd::{self, KernelTask, Kernels, SlabRay, TriangleHit};
+use super::strand_detail::{RayFilter, StrandLevel, StrandLevels, StrandUse, StrandView};
 use super::strand_geometry::StrandHit;
 use super::strand_surface;
 use crate::math::Ray;
@@ -132,9 +133,9 @@ impl Aggregate {
                 tlas_entries.push(TlasEntry::Triangles(index as u32));
                 boxes.push(instance.world_bounds(bounds));
             }
-            if let Some(bounds) = instance.geometry.strands.blas.bounds() {
+            if let Some(bounds) = instance.strand_bounds() {
                 tlas_entries.push(TlasEntry::Strands(index as u32));
-                boxes.push(instance.world_bounds(bounds));
+                boxes.push(bounds);
             }
         }
         // Build the merged BLAS, unless a cached one is still valid
@@ -160,19 +161,38 @@ impl Aggregate {
         self.instances.iter().map(|instance| instance.geometry.mesh().strands.len()).sum()
     }
 
+    /// Returns the coarsest level of detail of strands in words; none if all strands are met.
+    pub fn thinned_strands(&self) -> Option<String> {
+        let levels = self.instances.iter().filter_map(|instance| Some(instance.strands()?.levels()));
+        let coarsest = levels.max_by_key(|levels| levels.lighting.index())?;
+        let words = |level: StrandLevel| match level.every() {
+            1 => "all strands".to_owned(),
+            every => format!("one of {every} strands, {every} times as wide"),
+        };
+        (coarsest != StrandLevels::default()).then(|| {
+            let [seen, lighting] = [coarsest.seen, coarsest.lighting].map(words);
+            format!("hair finer than pixels: the camera sees {seen}; shadows and scattered light meet {lighting}")
+        })
+    }
+
+    /// Chooses the levels of detail of all strands for a view.
+    pub fn thin_strands(&mut self, view: &StrandView) {
+        self.instances.iter_mut().for_each(|instance| instance.thin_strands(Some(view)));
+    }
+
     /// Makes the bodies of lights visible to all rays: for rays that start at a receptor rather than at the camera.
     pub fn show_bodies(&mut self) {
         self.instances.iter_mut().filter_map(|instance| instance.body.as_mut()).for_each(|body| body.is_hidden = false);
     }
 
     /// Returns the closest hit of a ray with what it does not pass.
-    pub fn intersect(&self, ray: &Ray, passed: PassedBodies, stack: &mut TraversalStack) -> Option<Hit> {
-        simd::dispatch(Intersect { aggregate: self, ray, passed, stack })
+    pub fn intersect(&self, ray: &Ray, filter: RayFilter, stack: &mut TraversalStack) -> Option<Hit> {
+        simd::dispatch(Intersect { aggregate: self, ray, filter, stack })
     }
 
     /// Returns true if the ray hits anything that it does not pass before its `t_max`.
-    pub fn occluded(&self, ray: &Ray, passed: PassedBodies, stack: &mut TraversalStack) -> bool {
-        simd::dispatch(Occluded { aggregate: self, ray, passed, stack })
+    pub fn occluded(&self, ray: &Ray, filter: RayFilter, stack: &mut TraversalStack) -> bool {
+        simd::dispatch(Occluded { aggregate: self, ray, filter, stack })
     }
 
     /// Returns the surface interaction at a hit.
@@ -198,12 +218,19 @@ impl Aggregate {
 
     /// Intersects the strands of an instance in object space.
     #[inline(always)]
-    fn intersect_strands<K: Kernels>(&self, instance: u32, ray: &Ray, stack: &mut TraversalStack) -> Option<Hit> {
+    fn intersect_strands<K: Kernels>(
+        &self,
+        instance: u32,
+        ray: &Ray,
+        strand_use: StrandUse,
+        stack: &mut TraversalStack,
+    ) -> Option<Hit> {
         let placed = &self.instances[instance as usize];
+        let (blas, level) = placed.strands()?.of(strand_use);
         let local = placed.to_object(ray);
         let slab_ray = SlabRay::new(local.origin, local.direction);
-        let segment = placed.geometry.strands.blas.intersect::<K>(&local, &slab_ray, stack)?;
-        let hit = StrandHit { segment, ray_direction: ray.direction };
+        let segment = blas.intersect::<K>(&local, &slab_ray, stack)?;
+        let hit = StrandHit { segment, ray_direction: ray.direction, level };
         Some(Hit { instance, t: segment.t, primitive: Primitive::Strand(hit) })
     }
 }
@@ -212,7 +239,7 @@ impl Aggregate {
 struct Intersect<'a> {
     aggregate: &'a Aggregate,
     ray: &'a Ray,
-    passed: PassedBodies,
+    filter: RayFilter,
     stack: &'a mut TraversalStack,
 }
 
@@ -221,7 +248,7 @@ impl KernelTask for Intersect<'_> {
 
     #[inline(always)]
     fn run<K: Kernels>(self) -> Option<Hit> {
-        let Intersect { aggregate, ray, passed, stack } = self;
+        let Intersect { aggregate, ray, filter, stack } = self;
         // Intersect the merged BLAS in world space
         let slab_ray = SlabRay::new(ray.origin, ray.direction);
         let mut closest = aggregate.merged.blas.intersect::<K>(ray, &slab_ray, stack).map(|hit| {
@@ -239,7 +266,7 @@ impl KernelTask for Intersect<'_> {
                 for &entry in aggregate.tlas.leaf(leaf) {
                     let entry = aggregate.tlas_entries[entry as usize];
                     let (TlasEntry::Triangles(index) | TlasEntry::Strands(index)) = entry;
-                    if aggregate.instances[index as usize].is_passed(passed) {
+                    if aggregate.instances[index as usize].is_passed(filter.passed) {
                         continue;
                     }
                     let hit = match entry {
@@ -247,7 +274,7 @@ impl KernelTask for Intersect<'_> {
                             aggregate.intersect_triangles::<K>(instance, &Ray { t_max, ..*ray }, stack)
                         }
                         TlasEntry::Strands(instance) => {
-                            aggregate.intersect_strands::<K>(instance, &Ray { t_max, ..*ray }, stack)
+                            aggregate.intersect_strands::<K>(instance, &Ray { t_max, ..*ray }, filter.strands, stack)
                         }
                     };
                     if let Some(hit) = hit {
@@ -266,7 +293,7 @@ impl KernelTask for Intersect<'_> {
 struct Occluded<'a> {
     aggregate: &'a Aggregate,
     ray: &'a Ray,
-    passed: PassedBodies,
+    filter: RayFilter,
     stack: &'a mut TraversalStack,
 }
 
@@ -275,7 +302,7 @@ impl KernelTask for Occluded<'_> {
 
     #[inline(always)]
     fn run<K: Kernels>(self) -> bool {
-        let Occluded { aggregate, ray, passed, stack } = self;
+        let Occluded { aggregate, ray, filter, stack } = self;
         let slab_ray = SlabRay::new(ray.origin, ray.direction);
         if aggregate.merged.blas.occluded::<K>(ray, &slab_ray, stack) {
             return true;
@@ -290,14 +317,16 @@ impl KernelTask for Occluded<'_> {
                     let entry = aggregate.tlas_entries[entry as usize];
                     let (TlasEntry::Triangles(index) | TlasEntry::Strands(index)) = entry;
                     let instance = &aggregate.instances[index as usize];
-                    if instance.is_passed(passed) {
+                    if instance.is_passed(filter.passed) {
                         return false;
                     }
                     let local = instance.to_object(ray);
                     let slab_ray = SlabRay::new(local.origin, local.direction);
                     match entry {
                         TlasEntry::Triangles(_) => instance.geometry.blas.occluded::<K>(&local, &slab_ray, stack),
-                        TlasEntry::Strands(_) => instance.geometry.strands.blas.occluded::<K>(&local, &slab_ray, stack),
+                        TlasEntry::Strands(_) => instance.strands().is_some_and(|strands| {
+                            strands.of(filter.strands).0.occluded::<K>(&local, &slab_ray, stack)
+                        }),
                     }
                 })
             },

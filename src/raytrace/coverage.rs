@@ -6,6 +6,7 @@
 use super::aggregate::{Hit, Primitive};
 use super::geometry::PassedBodies;
 use super::ray_caster::{RayCaster, shadow_ray_end};
+use super::strand_detail::RayFilter;
 use crate::math::Ray;
 use glam::Vec3;
 
@@ -16,7 +17,7 @@ const NEGLIGIBLE: f32 = 1e-4;
 
 impl RayCaster<'_> {
     /// Returns the first surface from `hit` on that the ray meets.
-    pub(super) fn meet(&mut self, ray: &Ray, hit: Hit, passed: PassedBodies) -> Option<Hit> {
+    pub(super) fn meet(&mut self, ray: &Ray, hit: Hit, filter: RayFilter) -> Option<Hit> {
         let (mut next, mut hit, mut travelled) = (*ray, hit, 0.0);
         for _ in 0..MAX_PASSED {
             let surface = self.scene.aggregate.surface(&hit);
@@ -26,7 +27,7 @@ impl RayCaster<'_> {
             }
             travelled += hit.t;
             next = Ray { origin: surface.pass_origin(ray.direction), t_max: ray.t_max - travelled, ..next };
-            hit = self.scene.aggregate.intersect(&next, passed, &mut self.stack)?;
+            hit = self.scene.aggregate.intersect(&next, filter, &mut self.stack)?;
         }
         Some(Hit { t: travelled + hit.t, ..hit })
     }
@@ -38,7 +39,9 @@ impl RayCaster<'_> {
         let mut ray = Ray { origin, direction, t_max: shadow_ray_end(origin, distance) };
         let mut part = 1.0;
         for _ in 0..MAX_PASSED {
-            let Some(hit) = self.scene.aggregate.intersect(&ray, passed, &mut self.stack) else { return part };
+            let Some(hit) = self.scene.aggregate.intersect(&ray, RayFilter::lighting(passed), &mut self.stack) else {
+                return part;
+            };
             let surface = self.scene.aggregate.surface(&hit);
             part *= 1.0 - self.scene.coverage(&surface);
             if part < NEGLIGIBLE {

@@ -3,7 +3,9 @@
 use super::blas::Blas;
 use super::bvh::TraversalStack;
 use super::simd::{Kernels, SlabRay, TriangleHit};
-use super::strand_geometry::StrandGeometry;
+use super::strand_detail::{StrandLevel, StrandLevels, StrandView};
+use super::strand_geometry::{StrandBlases, StrandGeometry};
+use super::strand_surface::largest_scale;
 use crate::math::{self, Ray, gamma};
 use crate::scene::{LightId, Mesh};
 use glam::{Affine2, Affine3A, Mat3A, Vec2, Vec3, Vec3A};
@@ -118,20 +120,24 @@ pub struct Instance {
     abs_object_from_world: Affine3A,
     /// Inverse transpose, for normals.
     normal_matrix: Mat3A,
+    /// Of the strands; none without any.
+    strands: Option<StrandBlases>,
 }
 
 impl Instance {
-    /// Returns an instance of a mesh; none for a singular transform (a scale of zero): no ray hits such an instance.
+    /// Returns an instance of a mesh, whose strands are thinned for a view; none for a singular transform (a scale of
+    /// zero): no ray hits such an instance.
     pub fn new(
         geometry: Arc<MeshGeometry>,
         world_from_object: Affine3A,
         object: u32,
         materials: Vec<u32>,
+        view: Option<&StrandView>,
     ) -> Option<Self> {
         let object_from_world = world_from_object.inverse();
         let normal_matrix = object_from_world.matrix3.transpose();
         let is_invertible = object_from_world.is_finite() && world_from_object.is_finite();
-        is_invertible.then_some(Instance {
+        let mut instance = is_invertible.then_some(Instance {
             geometry,
             object,
             materials,
@@ -142,7 +148,35 @@ impl Instance {
             abs_world_from_object: abs(&world_from_object),
             abs_object_from_world: abs(&object_from_world),
             normal_matrix,
-        })
+            strands: None,
+        })?;
+        instance.thin_strands(view);
+        Some(instance)
+    }
+
+    /// Chooses the levels of detail of the strands for a view; all strands without one.
+    pub fn thin_strands(&mut self, view: Option<&StrandView>) {
+        let strands = &self.geometry.mesh.strands;
+        let Some(bounds) = self.strand_bounds() else { return };
+        let width_m = self.geometry.strands.width_m() * largest_scale(&self.world_from_object.matrix3);
+        let levels = view.map_or(StrandLevels::default(), |view| view.levels(bounds, width_m));
+        if self.strands.as_ref().is_none_or(|known| known.levels() != levels) {
+            self.strands = Some(self.geometry.strands.blases(strands, levels));
+        }
+    }
+
+    /// Returns the BLASes of its strands; none without any.
+    pub fn strands(&self) -> Option<&StrandBlases> {
+        self.strands.as_ref()
+    }
+
+    /// Returns the world bounding box of its strands at any level of detail; none without any.
+    pub fn strand_bounds(&self) -> Option<(Vec3, Vec3)> {
+        let strands = &self.geometry.mesh.strands;
+        let (low, high) = strands.bounds()?;
+        let most_radius_m = strands.points().iter().map(|point| point.radius_m).fold(0.0, f32::max);
+        let wider = most_radius_m * (StrandLevel::COARSEST.width() - 1.0);
+        Some(self.world_bounds((low - wider, high + wider)))
     }
 
     /// Returns true if a ray that passes these bodies passes the instance.

@@ -60,6 +60,7 @@ mod simd;
 mod sink;
 mod straight_path;
 mod strand_blas;
+mod strand_detail;
 mod strand_geometry;
 mod strand_surface;
 #[cfg(test)]
@@ -83,7 +84,7 @@ pub use light_meter::{DirectLight, LightMeter, MeterEffort, MeterPoint, MeterRes
 pub use live::{AtrousFilter, LiveCamera, LivePicture};
 pub use noise_target::{NoiseTarget, predicted_rays_left};
 pub use plan::{RenderPlan, Shortcut};
-pub use prepare::{PrepareError, prepare, prepare_kept, prepare_shared};
+pub use prepare::{PrepareError, Purpose, prepare, prepare_for, prepare_kept};
 pub use primary_objects::{bodies_in_picture, primary_objects};
 pub use render::{empty_film, render, resume};
 pub use render_part::render_part;

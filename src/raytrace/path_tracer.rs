@@ -11,7 +11,7 @@ use super::bsdf::{Bsdf, Polarisation, SurfaceBsdf};
 use super::caustics::{CausticMis, GatherDensities, GatherPoint, PhotonMap};
 use super::emitters::MisVertex;
 use super::events::{Lobe, PathEnd, PathEvent, PathVertex};
-use super::geometry::{PassedBodies, SurfaceInteraction};
+use super::geometry::SurfaceInteraction;
 use super::lights::LightImportances;
 use super::limits::PathLimits;
 use super::medium_stack::MediumStack;
@@ -20,6 +20,7 @@ use super::render_scene::RenderScene;
 use super::roulette::{survival_probability, survives};
 use super::sampler::{self, Dimensions, Sampler};
 use super::sink::RadianceSink;
+use super::strand_detail::RayFilter;
 use crate::math::Ray;
 use glam::Vec3;
 
@@ -179,8 +180,8 @@ impl<'a> PathTracer<'a> {
         let scene = self.caster.scene;
         loop {
             // Intersect the ray with the studio
-            let passed = if path.depth == 0 { PassedBodies::Hidden } else { PassedBodies::None };
-            let hit = self.caster.intersect_passing(&path.ray, passed);
+            let filter = RayFilter::of_path(path.depth, path.non_specular_depth);
+            let hit = self.caster.intersect_filtered(&path.ray, filter);
             let distance = hit.map_or(f32::INFINITY, |hit| hit.t);
 
             // Add the light of emitters in front of the surface

@@ -4,13 +4,14 @@ use super::aggregate::Aggregate;
 use super::bsdf::{RoughnessTables, TracedMaterial};
 use super::caustics::CausticCasters;
 use super::film::{self, Layer};
-use super::geometry::{BodyInstance, Instance};
+use super::geometry::{BodyInstance, Instance, MeshGeometry};
 use super::geometry_cache::GeometryCache;
-use super::lens::Lens;
+use super::lens::{Lens, PixelCamera};
 use super::lights::{EmitterBvh, LightSampler, TracedLight};
 use super::moments::{self, Moment};
 use super::plan::RenderPlan;
 use super::render_scene::{ROOM, RenderScene};
+use super::strand_detail::StrandView;
 use super::texture::TextureMap;
 use crate::photo::{PhotometricLight, exposure};
 use crate::scene::{
@@ -39,24 +40,35 @@ pub fn prepare(scene: &Scene, assets: &Assets) -> Result<RenderScene, PrepareErr
 /// Prepares a scene with the acceleration structures that an earlier call left in `cache`: unchanged meshes cost
 /// nothing.
 pub fn prepare_kept(scene: &Scene, assets: &Assets, cache: &GeometryCache) -> Result<RenderScene, PrepareError> {
-    prepare_moments(scene, assets, film::assign_layers, cache)
+    prepare_for(scene, assets, Purpose::default(), cache)
 }
 
-/// As [`prepare_kept`], with a film layer for each role of lights, which takes less memory than one for each light.
-pub fn prepare_shared(scene: &Scene, assets: &Assets, cache: &GeometryCache) -> Result<RenderScene, PrepareError> {
-    prepare_moments(scene, assets, film::share_layers, cache)
+/// What a scene is prepared for.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Purpose {
+    /// Pixels across and down of the pictures, which show no finer detail of hair; none for all strands.
+    pub picture: Option<(u32, u32)>,
+    /// Lights of one role share a film layer, which takes less memory than one for each light.
+    pub shares_layers: bool,
 }
 
-/// Prepares a scene with all moments of its exposure.
-fn prepare_moments(
+/// As [`prepare_kept`], for a purpose.
+pub fn prepare_for(
     scene: &Scene,
     assets: &Assets,
-    assign_layers: AssignLayers,
+    purpose: Purpose,
     cache: &GeometryCache,
 ) -> Result<RenderScene, PrepareError> {
-    let origin = scene.camera.position;
-    let mut prepared = prepare_all(scene, assets, origin, assign_layers, cache)?;
-    let in_moment = |moment: &Moment| prepare_at(scene, assets, origin, assign_layers, cache, Some(moment));
+    let picture = purpose.picture.filter(|(width, height)| *width > 0 && *height > 0);
+    let pixel_m = picture.map(|(width, height)| Lens::new(scene).film_camera(width, height).pixel_m());
+    let place = Place {
+        origin: scene.camera.position,
+        // The camera is the origin
+        view: pixel_m.map(|pixel_m| StrandView { position: Vec3::ZERO, pixel_m }),
+    };
+    let assign_layers = if purpose.shares_layers { film::share_layers } else { film::assign_layers };
+    let mut prepared = prepare_all(scene, assets, &place, assign_layers, cache)?;
+    let in_moment = |moment: &Moment| prepare_at(scene, assets, &place, assign_layers, cache, Some(moment));
     prepared.moments = moments::of(scene, assets).par_iter().map(in_moment).collect::<Result<_, _>>()?;
     if !prepared.moments.is_empty() {
         let reason = format!("water moves while it is lit: {} moments of the exposure", prepared.moments.len());
@@ -68,23 +80,38 @@ fn prepare_moments(
 /// Assigns each light its film layer.
 pub(super) type AssignLayers = fn(&Scene, &mut [(TracedLight, &Light)]) -> Vec<Layer>;
 
-/// Prepares a scene at one time, with the tracer's origin at a world position, near which coordinates are most precise,
-/// and with a cache of acceleration structures.
+/// Where a prepared scene is looked at from.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Place {
+    /// The tracer's origin, a world position near which coordinates are most precise.
+    pub origin: Vec3,
+    /// The camera for which strands are thinned; all strands without one.
+    pub view: Option<StrandView>,
+}
+
+impl Place {
+    /// A place from which all strands are met.
+    pub fn at(origin: Vec3) -> Self {
+        Place { origin, view: None }
+    }
+}
+
+/// Prepares a scene at one time, with a cache of acceleration structures.
 pub(super) fn prepare_all(
     scene: &Scene,
     assets: &Assets,
-    origin: Vec3,
+    place: &Place,
     assign_layers: AssignLayers,
     cache: &GeometryCache,
 ) -> Result<RenderScene, PrepareError> {
-    prepare_at(scene, assets, origin, assign_layers, cache, None)
+    prepare_at(scene, assets, place, assign_layers, cache, None)
 }
 
 /// As [`prepare_all`], in a moment of the exposure.
 fn prepare_at(
     scene: &Scene,
     assets: &Assets,
-    origin: Vec3,
+    &Place { origin, view }: &Place,
     assign_layers: AssignLayers,
     cache: &GeometryCache,
     moment: Option<&Moment>,
@@ -98,13 +125,16 @@ fn prepare_at(
     let mut tables = Tables::new(cache);
     let placed = place_meshes(scene, assets, moment, &mut tables);
     let geometries = cache.geometries(&unique(placed.iter().map(|p| &p.mesh)));
+    let with_geometry = |p: Placed| Some((geometries.get(&Arc::as_ptr(&p.mesh))?.clone(), p));
+    let placed: Vec<(Arc<MeshGeometry>, Placed)> = placed.into_iter().filter_map(with_geometry).collect();
+    let materials = &tables.materials;
     let instances = placed
-        .into_iter()
-        .filter_map(|p| {
-            let geometry = geometries.get(&Arc::as_ptr(&p.mesh))?.clone();
-            let clear = p.materials.iter().any(|&m| tables.materials[m as usize].transmits());
+        .into_par_iter()
+        .filter_map(|(geometry, p)| {
+            let clear = p.materials.iter().any(|&m| materials[m as usize].transmits());
             let is_thin = clear && !geometry.is_closed();
-            let mut placed = Instance::new(geometry, relative_to(p.world_from_object, origin), p.object, p.materials)?;
+            let transform = relative_to(p.world_from_object, origin);
+            let mut placed = Instance::new(geometry, transform, p.object, p.materials, view.as_ref())?;
             (placed.is_thin, placed.body) = (is_thin, p.body);
             Some(placed)
         })
@@ -122,7 +152,8 @@ fn prepare_at(
     }
     let continuous = moment.map_or(1.0, |moment| moment.of_continuous_light(&scene.camera));
     let lens = Lens::new(scene);
-    let plan = RenderPlan::new(&tables.materials, &lights, &lens, aggregate.strand_count());
+    let mut plan = RenderPlan::new(&tables.materials, &lights, &lens, aggregate.strand_count());
+    plan.reasons.extend(aggregate.thinned_strands());
     let casters = match plan.photons {
         true => CausticCasters::new(&aggregate, &tables.materials),
         false => CausticCasters::default(),

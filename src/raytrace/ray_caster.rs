@@ -4,6 +4,7 @@ use super::aggregate::Hit;
 use super::bvh::TraversalStack;
 use super::geometry::PassedBodies;
 use super::render_scene::RenderScene;
+use super::strand_detail::RayFilter;
 use crate::math::Ray;
 use glam::Vec3;
 
@@ -38,35 +39,36 @@ impl<'a> RayCaster<'a> {
 
     /// Returns the closest hit.
     pub fn intersect(&mut self, ray: &Ray) -> Option<Hit> {
-        self.intersect_passing(ray, PassedBodies::None)
+        self.intersect_filtered(ray, RayFilter::default())
     }
 
     /// Returns the closest hit of a camera ray, which passes the bodies of lights that are hidden from the camera.
     pub fn intersect_from_camera(&mut self, ray: &Ray) -> Option<Hit> {
-        self.intersect_passing(ray, PassedBodies::Hidden)
+        self.intersect_filtered(ray, RayFilter::seen(PassedBodies::Hidden))
     }
 
-    /// Returns the closest hit of a ray that passes some bodies of lights.
-    pub fn intersect_passing(&mut self, ray: &Ray, passed: PassedBodies) -> Option<Hit> {
-        let hit = self.intersect_all(ray, passed)?;
-        if self.scene.plan().coverage { self.meet(ray, hit, passed) } else { Some(hit) }
+    /// Returns the closest hit of a ray with what its filter leaves.
+    pub fn intersect_filtered(&mut self, ray: &Ray, filter: RayFilter) -> Option<Hit> {
+        let hit = self.intersect_all(ray, filter)?;
+        if self.scene.plan().coverage { self.meet(ray, hit, filter) } else { Some(hit) }
     }
 
     /// Returns the closest hit, also of a surface that is not there.
-    pub(super) fn intersect_all(&mut self, ray: &Ray, passed: PassedBodies) -> Option<Hit> {
+    pub(super) fn intersect_all(&mut self, ray: &Ray, filter: RayFilter) -> Option<Hit> {
         self.rays += 1;
-        self.scene.aggregate.intersect(ray, passed, &mut self.stack)
+        self.scene.aggregate.intersect(ray, filter, &mut self.stack)
     }
 
     /// Returns true if a surface lies between a point and an emitter at `distance` from it. Light passes the body of
     /// its own light.
     pub fn occluded(&mut self, origin: Vec3, direction: Vec3, distance: f32, passed: PassedBodies) -> bool {
         let ray = Ray { origin, direction, t_max: shadow_ray_end(origin, distance) };
+        let filter = RayFilter::lighting(passed);
         if self.scene.plan().coverage {
-            return self.intersect_passing(&ray, passed).is_some();
+            return self.intersect_filtered(&ray, filter).is_some();
         }
         self.rays += 1;
-        self.scene.aggregate.occluded(&ray, passed, &mut self.stack)
+        self.scene.aggregate.occluded(&ray, filter, &mut self.stack)
     }
 
     /// Returns true if caustics come from photons.

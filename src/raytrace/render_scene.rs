@@ -11,6 +11,7 @@ use super::medium_stack::MediumStack;
 use super::plan::RenderPlan;
 use super::sampler::{Dimensions, Sampler};
 use super::sink::{FirstHit, FirstObject, SeenSurface};
+use super::strand_detail::StrandView;
 use super::texture::TextureMap;
 use crate::math::Ray;
 use crate::scene::LightId;
@@ -59,6 +60,12 @@ impl RenderScene {
     pub fn set_plan(&mut self, plan: RenderPlan) {
         self.moments.iter_mut().for_each(|moment| moment.plan = plan.clone());
         self.plan = plan;
+    }
+
+    /// Chooses the levels of detail of strands for a camera.
+    pub(super) fn thin_strands(&mut self, view: &StrandView) {
+        self.aggregate.thin_strands(view);
+        self.moments.iter_mut().for_each(|moment| moment.thin_strands(view));
     }
 
     /// The scene in each moment of its exposure, for samples and photons that have [`RenderScene::moment_of`].

@@ -8,6 +8,7 @@ use super::medium_stack::MediumStack;
 use super::ray_caster::{RayCaster, shadow_ray_end};
 use super::render_scene::RenderScene;
 use super::straight_path::StraightPath;
+use super::strand_detail::RayFilter;
 use super::wavefront::Wavefront;
 use crate::math::Ray;
 use glam::Vec3;
@@ -123,8 +124,8 @@ impl RayCaster<'_> {
 impl RayCaster<'_> {
     /// Returns the next surface on a shadow ray, and weights the ray where it passes others that are not all there.
     fn next_surface(&mut self, shadow_ray: &mut ShadowRay<'_>) -> Option<Hit> {
-        let bodies = shadow_ray.query.passed;
-        let hit = self.intersect_all(&shadow_ray.ray, bodies)?;
+        let filter = RayFilter::lighting(shadow_ray.query.passed);
+        let hit = self.intersect_all(&shadow_ray.ray, filter)?;
         if !self.scene.plan().coverage {
             return Some(hit);
         }
@@ -139,7 +140,7 @@ impl RayCaster<'_> {
             travelled += hit.t;
             let t_max = next.t_max - hit.t;
             next = Ray { origin: surface.pass_origin(next.direction), t_max, ..next };
-            hit = self.scene.aggregate.intersect(&next, bodies, &mut self.stack)?;
+            hit = self.scene.aggregate.intersect(&next, filter, &mut self.stack)?;
         }
         Some(Hit { t: travelled + hit.t, ..hit })
     }

@@ -13,8 +13,9 @@
 
 use super::blas::{Blas, LeafPacket};
 use super::simd::{Kernels, RibbonRay, SegmentHit, SegmentPacket};
+use super::strand_detail::{MIN_THINNED, StrandLevel};
 use crate::math::Ray;
-use crate::scene::Strands;
+use crate::scene::{StrandPoint, Strands};
 use glam::Vec3;
 use rayon::prelude::*;
 
@@ -41,18 +42,29 @@ impl LeafPacket for SegmentPacket {
     }
 }
 
-/// Builds the BVH over all segments.
-pub fn strand_blas(strands: &Strands) -> StrandBlas {
-    let segments: Vec<u32> = strands.segments().collect();
-    let ends = |first: u32| [strands.points()[first as usize], strands.points()[first as usize + 1]];
-    let bounds = |&first: &u32| {
+/// Builds the BVH over the segments of the strands that a level of detail keeps.
+pub fn strand_blas(strands: &Strands, level: StrandLevel) -> StrandBlas {
+    // The first point of each segment, with the factor on its radius
+    let mut segments: Vec<(u32, f32)> = Vec::with_capacity(strands.points().len() / level.every());
+    for part in strands.parts() {
+        let level = if part.strands.len() < MIN_THINNED { StrandLevel::ALL } else { level };
+        for strand in part.strands.clone().step_by(level.every()) {
+            let points = strands.range(strand as usize);
+            segments.extend((points.start as u32..points.end as u32 - 1).map(|first| (first, level.width())));
+        }
+    }
+    let ends = |(first, width): (u32, f32)| {
+        let point = |index: u32| strands.points()[index as usize];
+        [point(first), point(first + 1)].map(|end| StrandPoint { radius_m: end.radius_m * width, ..end })
+    };
+    let bounds = |&segment: &(u32, f32)| {
         let [(a_low, a_high), (b_low, b_high)] =
-            ends(first).map(|end| (end.position - end.radius_m, end.position + end.radius_m));
+            ends(segment).map(|end| (end.position - end.radius_m, end.position + end.radius_m));
         (a_low.min(b_low), a_high.max(b_high))
     };
     let boxes: Vec<(Vec3, Vec3)> = segments.par_iter().map(bounds).collect();
     Blas::build(&boxes, |leaf| {
-        let first_points = leaf.iter().map(|&i| segments[i as usize]);
-        SegmentPacket::new(first_points.map(|first| (first, ends(first))))
+        let of_leaf = leaf.iter().map(|&i| segments[i as usize]);
+        SegmentPacket::new(of_leaf.map(|segment| (segment.0, ends(segment))))
     })
 }

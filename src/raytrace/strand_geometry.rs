@@ -2,15 +2,19 @@
 
 use super::simd::SegmentHit;
 use super::strand_blas::{StrandBlas, strand_blas};
-use crate::scene::Strands;
+use super::strand_detail::{MIN_THINNED, StrandLevel, StrandLevels, StrandUse};
+use crate::scene::{StrandPart, Strands};
 use glam::Vec3;
 use std::ops::Range;
+use std::sync::{Arc, Mutex, PoisonError};
 
-/// The strands of a mesh, if it has any, with their BLAS.
+/// The strands of a mesh, if it has any, with the BLASes of their levels of detail that were asked for.
 #[derive(Debug)]
 pub struct StrandGeometry {
-    /// Over all segments, in object space.
-    pub blas: StrandBlas,
+    /// By level, in object space.
+    blases: Mutex<[Option<Arc<StrandBlas>>; StrandLevel::COUNT]>,
+    /// Mean width of the strands that levels of detail thin; 0 without any.
+    width_m: f32,
     /// A bit for each point that starts a strand.
     starts: Vec<u64>,
     /// Points of each part.
@@ -24,10 +28,12 @@ pub struct StrandHit {
     pub segment: SegmentHit,
     /// Direction of the ray in world space, which the ribbon faces.
     pub ray_direction: Vec3,
+    /// The level of detail of the strand.
+    pub level: StrandLevel,
 }
 
 impl StrandGeometry {
-    /// Builds the BLAS of a mesh's strands.
+    /// Prepares a mesh's strands. Their BLASes are built on first use.
     pub fn new(strands: &Strands) -> Self {
         let mut starts = vec![0; strands.points().len() / 64 + 1];
         strands.starts().iter().for_each(|&start| starts[start as usize / 64] |= 1 << (start % 64));
@@ -35,7 +41,29 @@ impl StrandGeometry {
             strands.range(range.start as usize).start as u32..strands.range(range.end as usize - 1).end as u32
         };
         let parts = strands.parts().iter().map(|part| points_of(&part.strands)).collect();
-        StrandGeometry { blas: strand_blas(strands), starts, parts }
+        StrandGeometry { blases: Mutex::default(), width_m: mean_width_m(strands), starts, parts }
+    }
+
+    /// Returns the mean width of the strands that levels of detail thin, metres; 0 without any.
+    pub fn width_m(&self) -> f32 {
+        self.width_m
+    }
+
+    /// Returns the BLAS of a level of detail.
+    fn blas(&self, strands: &Strands, level: StrandLevel) -> Arc<StrandBlas> {
+        let lock = || self.blases.lock().unwrap_or_else(PoisonError::into_inner);
+        let known = lock()[level.index()].clone();
+        known.unwrap_or_else(|| {
+            // Not under the lock: the build may run other tasks on this thread, which may want the same BLAS
+            let built = Arc::new(strand_blas(strands, level));
+            lock()[level.index()].get_or_insert(built).clone()
+        })
+    }
+
+    /// Returns the BLASes of two levels of detail.
+    pub fn blases(&self, strands: &Strands, levels: StrandLevels) -> StrandBlases {
+        let of = |level| self.blas(strands, level);
+        StrandBlases { levels, seen: of(levels.seen), lighting: of(levels.lighting) }
     }
 
     /// Returns the index of the part of a segment, among the strands' parts.
@@ -77,4 +105,39 @@ impl StrandGeometry {
         let chord = chord.normalize_or(Vec3::Y);
         before.normalize_or(chord).lerp(after.normalize_or(chord), s).normalize_or(chord)
     }
+}
+
+/// The BLASes over the strands that rays of an instance meet.
+#[derive(Clone, Debug)]
+pub struct StrandBlases {
+    levels: StrandLevels,
+    seen: Arc<StrandBlas>,
+    lighting: Arc<StrandBlas>,
+}
+
+impl StrandBlases {
+    /// Returns the levels of detail.
+    pub fn levels(&self) -> StrandLevels {
+        self.levels
+    }
+
+    /// Returns the BLAS for a use, and its level of detail.
+    #[inline(always)]
+    pub fn of(&self, strand_use: StrandUse) -> (&StrandBlas, StrandLevel) {
+        match strand_use {
+            StrandUse::Seen => (&self.seen, self.levels.seen),
+            StrandUse::Lighting => (&self.lighting, self.levels.lighting),
+        }
+    }
+}
+
+/// Returns the mean width of the strands of all parts that levels of detail thin; 0 without any.
+fn mean_width_m(strands: &Strands) -> f32 {
+    let is_thinned = |part: &&StrandPart| part.strands.len() >= MIN_THINNED;
+    let of_part = |part: &StrandPart| {
+        let first = strands.range(part.strands.start as usize).start;
+        let points = &strands.points()[first..strands.range(part.strands.end as usize - 1).end];
+        2.0 * points.iter().map(|point| point.radius_m).sum::<f32>() / points.len() as f32
+    };
+    strands.parts().iter().filter(is_thinned).map(of_part).fold(0.0, f32::max)
 }

@@ -27,7 +27,7 @@ pub fn surface(instance: &Instance, hit: &StrandHit) -> SurfaceInteraction {
     let across = facing.cross(along) * h;
 
     // Bound the error so that rays which leave in any direction clear the fibre
-    let radius = (a.radius_m + s * (b.radius_m - a.radius_m)) * largest_scale(&matrix);
+    let radius = (a.radius_m + s * (b.radius_m - a.radius_m)) * largest_scale(&matrix) * hit.level.width();
     let rounding = instance.world_error(local, local.abs() * crate::math::gamma(8));
     let position_error = Vec3::from(rounding) + SPAWN_RADII * radius;
 
@@ -63,7 +63,8 @@ fn frame(along: Vec3, ray_direction: Vec3) -> (Vec3, Vec3) {
     (perpendicular.try_normalize().unwrap_or_else(|| orthonormal_basis(along).0), along)
 }
 
-fn largest_scale(matrix: &Mat3A) -> f32 {
+/// Returns the largest factor by which a transform scales the axes.
+pub(super) fn largest_scale(matrix: &Mat3A) -> f32 {
     let columns = [matrix.x_axis, matrix.y_axis, matrix.z_axis];
     columns.into_iter().map(Vec3A::length_squared).fold(0.0, f32::max).sqrt()
 }

@@ -2,10 +2,11 @@
 
 use super::aggregate::{Aggregate, Hit, Primitive};
 use super::bvh::TraversalStack;
-use super::geometry::{Instance, MeshGeometry, PassedBodies};
+use super::geometry::{Instance, MeshGeometry};
 use super::simd::{LANES, RibbonRay, SegmentHit, SegmentPacket};
+use super::strand_detail::{RayFilter, StrandLevel, StrandLevels, StrandView};
 use super::strand_geometry::StrandHit;
-use super::{Method, RenderControl, Settings, prepare, render};
+use super::{GeometryCache, Method, Purpose, RenderControl, RenderScene, Settings, prepare, prepare_for, render};
 use crate::math::Ray;
 use crate::scene::*;
 use crate::statistics::{SampleMean, TestRng, critical_z};
@@ -29,7 +30,7 @@ fn only_strands(mesh: &Mesh) -> Mesh {
 }
 
 fn instance(mesh: Mesh, transform: Affine3A) -> Instance {
-    Instance::new(Arc::new(MeshGeometry::new(Arc::new(mesh))), transform, 0, vec![0, 1]).unwrap()
+    Instance::new(Arc::new(MeshGeometry::new(Arc::new(mesh))), transform, 0, vec![0, 1], None).unwrap()
 }
 
 fn strand_hit(hit: &Hit) -> StrandHit {
@@ -79,10 +80,10 @@ fn the_closest_hit_of_strands_is_that_of_brute_force_under_any_transform() {
                 let t_max = truth.map_or(ray.t_max, |hit| hit.t);
                 truth = packet.intersect(&ribbon_ray, t_max).or(truth);
             }
-            let ours = aggregate.intersect(&ray, PassedBodies::None, &mut stack);
+            let ours = aggregate.intersect(&ray, RayFilter::default(), &mut stack);
             // Of two segments at one distance either may be returned.
             assert_eq!(ours.map(|hit| hit.t), truth.map(|hit| hit.t), "ray {i}: {ray:?}");
-            assert_eq!(aggregate.occluded(&ray, PassedBodies::None, &mut stack), truth.is_some(), "ray {i}: {ray:?}");
+            assert_eq!(aggregate.occluded(&ray, RayFilter::default(), &mut stack), truth.is_some(), "ray {i}: {ray:?}");
             hits += usize::from(truth.is_some());
         }
         assert!(hits > 300, "only {hits} rays hit anything: too few for the test");
@@ -112,7 +113,7 @@ fn the_surface_of_a_strand_has_its_tangent_offset_and_position() {
             // Seen from +Z, N x T = Z x T points outwards: h counts in that direction.
             let origin = (outwards * (1.0 + 0.002 * h) + Vec3::Z) * scale;
             let ray = Ray { origin, direction: Vec3::NEG_Z, t_max: f32::INFINITY };
-            let hit = aggregate.intersect(&ray, PassedBodies::None, &mut stack).unwrap();
+            let hit = aggregate.intersect(&ray, RayFilter::default(), &mut stack).unwrap();
             assert_eq!(strand_hit(&hit).ray_direction, Vec3::NEG_Z);
             let surface = aggregate.surface(&hit);
             let strand = surface.strand.unwrap();
@@ -154,12 +155,12 @@ fn rays_that_leave_a_fibre_do_not_hit_it_again() {
             let direction = rng.direction();
             let origin = axis - direction * rng.range(0.001, 3.0);
             let ray = Ray { origin: origin + rng.direction() * radius_m, direction, t_max: f32::INFINITY };
-            let Some(hit) = aggregate.intersect(&ray, PassedBodies::None, &mut stack) else { continue };
+            let Some(hit) = aggregate.intersect(&ray, RayFilter::default(), &mut stack) else { continue };
             let surface = aggregate.surface(&hit);
             let away = rng.direction();
             let again = Ray { origin: surface.spawn_origin(away), direction: away, t_max: f32::INFINITY };
             assert!(
-                !aggregate.occluded(&again, PassedBodies::None, &mut stack),
+                !aggregate.occluded(&again, RayFilter::default(), &mut stack),
                 "left the fibre and hit it: {ray:?} {again:?}"
             );
             left += 1;
@@ -181,7 +182,7 @@ fn a_strand_is_as_wide_as_its_radius_says() {
     let hits = SampleMean::of((0..100_000).map(|_| {
         let origin = Vec3::new(rng.range(-0.5, 1.5), rng.range(-0.05, 0.05), 3.0);
         let ray = Ray { origin, direction: Vec3::NEG_Z, t_max: f32::INFINITY };
-        f64::from(u8::from(aggregate.intersect(&ray, PassedBodies::None, &mut stack).is_some()))
+        f64::from(u8::from(aggregate.intersect(&ray, RayFilter::default(), &mut stack).is_some()))
     }));
     // A trapezium and two half discs, of an area of 0.2.
     let area = 0.03 + 0.5 * std::f64::consts::PI * (0.02_f64.powi(2) + 0.01_f64.powi(2));
@@ -232,6 +233,41 @@ fn white_hair_disappears_in_an_even_surround() {
     let (black, assets) = furnace(Fibre::of_melanin(1.0, 0.0));
     let (dark, ..) = rendered(&black, &assets, Method::Path);
     assert!(dark < 0.8 * bare, "black hair is darker: {dark} for {bare}");
+}
+
+#[test]
+fn thinned_hair_is_as_bright_as_all_of_it() {
+    // Too far away for single strands: one of eight is kept, for the camera and for light.
+    let ball = HairyBall { strands: 12_000, segments: 6, strand_radius_m: 40e-6, ..HairyBall::HEAD };
+    let (mut scene, mut assets) = furnace(Fibre::of_melanin(0.3, 0.1));
+    assets.insert_mesh("hair.obj", Arc::new(only_strands(&hair(&ball))));
+    let panel = Emitter::RectPanel { width_m: 0.6, height_m: 0.6 };
+    let key = Light {
+        position: Vec3::new(0.8, 0.6, 0.8),
+        aim: Aim::Point(Vec3::ZERO),
+        ..Light::new(panel, Output::Lumens(3000.0))
+    };
+    scene.lights = vec![key];
+    let settings = Settings { width: 24, height: 16, spp: 256, ..Settings::default() };
+    let purpose = Purpose { picture: Some((settings.width, settings.height)), ..Purpose::default() };
+    let all = prepare(&scene, &assets).unwrap();
+    let thinned = prepare_for(&scene, &assets, purpose, &GeometryCache::default()).unwrap();
+    let levels = |scene: &RenderScene| scene.aggregate.instances()[0].strands().unwrap().levels();
+    assert_eq!(levels(&all), StrandLevels::default());
+    assert_eq!(levels(&thinned), StrandLevels { seen: StrandLevel::COARSEST, lighting: StrandLevel::COARSEST });
+    assert!(thinned.plan().to_string().contains("one of 8 strands, 8 times as wide"), "{}", thinned.plan());
+    let mean = |prepared: &RenderScene| {
+        let film = render(prepared, &settings, &RenderControl::new(), &mut |_| ControlFlow::Continue(()));
+        let rgb = film.develop(&scene).rgb;
+        rgb.iter().map(|rgb| rgb[1]).sum::<f32>() / rgb.len() as f32
+    };
+    let (ours, truth) = (mean(&thinned), mean(&all));
+    // 1500 strands instead of 12 000: which of them are kept makes a per cent, the noise half of that
+    assert!((ours / truth - 1.0).abs() < 0.03, "{ours} for {truth}");
+    // A camera that comes near sees all strands again
+    let mut near = thinned;
+    near.thin_strands(&StrandView { position: Vec3::Z * 0.11, pixel_m: 1e-4 });
+    assert_eq!(levels(&near).seen, StrandLevel::ALL);
 }
 
 #[test]

@@ -10,7 +10,7 @@ use crate::denoise::{self, Quality};
 use crate::io::{self, SaveError};
 use crate::jobs::render_all_passes;
 use crate::photo::Picture;
-use crate::raytrace::{GeometryCache, PrepareError, RenderControl, Settings, prepare_kept};
+use crate::raytrace::{GeometryCache, PrepareError, Purpose, RenderControl, Settings, prepare_for};
 use crate::scene::{Assets, Scene};
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
@@ -86,7 +86,8 @@ pub fn small_picture(
 ) -> Result<Option<Picture>, PrepareError> {
     let (width, height) = scene.camera.picture_size(longer_side);
     let settings = Settings { width, height, spp: samples, aovs: true, ..Settings::default() };
-    let prepared = prepare_kept(scene, assets, cache)?;
+    let purpose = Purpose { picture: Some((width, height)), ..Purpose::default() };
+    let prepared = prepare_for(scene, assets, purpose, cache)?;
     let film = render_all_passes(&prepared, &settings, control);
     let picture = film.develop(scene);
     let denoised = match film.denoiser_aovs() {

@@ -21,8 +21,12 @@ fn modified(emitter: Emitter, modifier: Modifier) -> Scene {
 
 /// Returns the illuminance at positions that face `towards`, with 4096 light samples each.
 fn lux(scene: &Scene, positions: &[Vec3], towards: Vec3) -> Vec<f32> {
+    lux_by_paths(4096, scene, positions, towards)
+}
+
+fn lux_by_paths(paths: u32, scene: &Scene, positions: &[Vec3], towards: Vec3) -> Vec<f32> {
     let meter = LightMeter::new(scene, &Assets::default(), Vec3::ZERO).unwrap();
-    let effort = MeterEffort { paths: Some(4096), ..MeterEffort::default() };
+    let effort = MeterEffort { paths: Some(paths), ..MeterEffort::default() };
     let read = |&position: &Vec3| {
         let facing = (towards - position).normalize();
         let point = MeterPoint { position, facing, receptor: Receptor::Flat };
@@ -72,7 +76,8 @@ fn flux_outside_of_the_beam_is_lost_and_the_axial_intensity_is_kept() {
             }
         }
         let scene = modified(emitter, modifier);
-        let flux_through = |scene: &Scene| lux(scene, &positions, Vec3::ZERO);
+        // Hundreds of positions average the noise of each
+        let flux_through = |scene: &Scene| lux_by_paths(128, scene, &positions, Vec3::ZERO);
         let (with, without) = (flux_through(&scene), flux_through(&modified(emitter, Modifier::default())));
         let flux: f32 = with.iter().zip(&areas).map(|(lux, area)| lux * area).sum();
         let fraction = transmitted_flux_fraction(&EmitterShape::new(&emitter), Beam::new(&modifier).as_ref());

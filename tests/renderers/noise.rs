@@ -1,6 +1,6 @@
 //! Adaptive sampling by `--noise`: more samples where the noise is, without bias.
 
-use crate::people::{coarse_and_hairless, shipped};
+use crate::people::{coarse_and_hairless, prepared, shipped};
 use crate::studio::measure::film_with;
 use catchlight::io::presets;
 use catchlight::photo::Picture;
@@ -41,11 +41,10 @@ fn the_estimated_noise_of_every_shipped_studio_is_the_scatter_over_sixteen_seeds
     let mut ratios = [0.0; SPP.len()];
     for preset in presets() {
         let loaded = shipped(preset.file_name);
-        let prepared = raytrace::prepare(&loaded.scene, &loaded.assets).unwrap();
         let mut sampled: [Vec<Sampled>; SPP.len()] = Default::default();
         for seed in 0..SEEDS {
             let settings = Settings { width: 32, height: 32, spp: SPP[1], seed, ..Settings::default() };
-            raytrace::render(&prepared, &settings, &RenderControl::new(), &mut |film| {
+            raytrace::render(prepared(preset.file_name), &settings, &RenderControl::new(), &mut |film| {
                 if let Some(index) = SPP.iter().position(|spp| *spp == film.spp()) {
                     let picture = film.develop(&loaded.scene);
                     let luminance = |[r, g, b]: &[f32; 3]| f64::from(0.2126 * r + 0.7152 * g + 0.0722 * b);

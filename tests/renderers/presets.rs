@@ -1,6 +1,6 @@
 //! Renders every studio preset: finite, lit, the same bits for any number of threads.
 
-use crate::people::{coarse_and_hairless, shipped};
+use crate::people::{coarse_and_hairless, prepared, shipped};
 use crate::studio::measure::film_with;
 use catchlight::io;
 use catchlight::raytrace::{self, Film, Method, RenderControl, RenderScene, Settings};
@@ -17,9 +17,8 @@ fn every_preset_renders_finite_and_lit() {
     for preset in io::presets() {
         let loaded = shipped(preset.file_name);
         assert!(loaded.warnings.is_empty(), "{}: {:?}", preset.file_name, loaded.warnings);
-        let prepared = raytrace::prepare(&loaded.scene, &loaded.assets).unwrap();
         let (width, height) = loaded.scene.camera.picture_size(48);
-        let film = render(&prepared, &Settings { width, height, spp: 4, ..Settings::default() }, 2);
+        let film = render(prepared(preset.file_name), &Settings { width, height, spp: 4, ..Settings::default() }, 2);
         assert_eq!(film.nonfinite().count, 0, "{}: first at {:?}", preset.file_name, film.nonfinite().first);
         let picture = film.develop(&loaded.scene);
         assert!(picture.rgb.iter().flatten().all(|c| c.is_finite() && *c >= 0.0), "{}", preset.file_name);
@@ -66,17 +65,17 @@ fn a_seed_changes_only_the_noise() {
 #[test]
 fn a_cancelled_render_keeps_its_complete_passes() {
     let loaded = shipped("three_point");
-    let prepared = raytrace::prepare(&loaded.scene, &loaded.assets).unwrap();
+    let prepared = prepared("three_point");
     let settings = Settings { width: 40, height: 40, spp: 64, ..Settings::default() };
     let control = RenderControl::new();
-    let film = raytrace::render(&prepared, &settings, &control, &mut |film| {
+    let film = raytrace::render(prepared, &settings, &control, &mut |film| {
         if film.spp() == 4 {
             control.cancel();
         }
         ControlFlow::Continue(())
     });
     assert_eq!(film.spp(), 4);
-    let reference = render(&prepared, &Settings { spp: 4, ..settings }, 2);
+    let reference = render(prepared, &Settings { spp: 4, ..settings }, 2);
     assert_eq!(film.develop(&loaded.scene), reference.develop(&loaded.scene));
 }
 

@@ -3,7 +3,9 @@
 use super::Arguments;
 use crate::cli::terminal::result;
 use crate::io::Loaded;
-use crate::raytrace::{self, Lobe, PathEnd, PathEvent, PathVertex, RenderScene, Replay, SampleId, Settings};
+use crate::raytrace::{
+    self, GeometryCache, Lobe, PathEnd, PathEvent, PathVertex, Purpose, RenderScene, Replay, SampleId, Settings,
+};
 use crate::scene::Scene;
 use anyhow::{Context, anyhow};
 use glam::Vec3;
@@ -34,7 +36,10 @@ pub fn run(arguments: &Arguments, loaded: &Loaded, settings: &Settings, (x, y): 
         return Err(anyhow!("the picture of {width}x{height} pixels has no pixel {x},{y}"));
     }
     let scene = &loaded.scene;
-    let mut prepared = raytrace::prepare(scene, &loaded.assets)?;
+    let mut prepared = {
+        let purpose = Purpose { picture: Some((width, height)), ..Purpose::default() };
+        raytrace::prepare_for(scene, &loaded.assets, purpose, &GeometryCache::default())?
+    };
     let plan = arguments.without().iter().fold(prepared.plan().clone(), |plan, shortcut| plan.without(*shortcut));
     prepared.set_plan(plan);
     let chosen = arguments.sample.unwrap_or_else(|| raytrace::brightest_sample(&prepared, settings, (x, y)));

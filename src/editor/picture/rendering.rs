@@ -319,7 +319,7 @@ impl Rendering {
             // Its end wakes the window.
             return Some(Duration::MAX);
         }
-        let pause = self.developed.as_ref()?.pause(job.progress().elapsed);
+        let pause = self.developed.as_ref()?.pause(job.settings.pixels(), job.progress().elapsed);
         (!pause.is_zero()).then_some(pause)
     }
 

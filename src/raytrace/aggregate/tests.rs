@@ -50,7 +50,7 @@ fn random_rays(count: u32) -> Vec<Ray> {
 }
 
 fn instance(mesh: Mesh, transform: Affine3A, object: u32) -> Instance {
-    Instance::new(Arc::new(MeshGeometry::new(Arc::new(mesh))), transform, object, vec![0]).unwrap()
+    Instance::new(Arc::new(MeshGeometry::new(Arc::new(mesh))), transform, object, vec![0], None).unwrap()
 }
 
 /// Intersects every triangle of every instance, with the same triangle test in the same space.
@@ -89,17 +89,17 @@ fn the_closest_hit_is_that_of_brute_force() {
     let mut stack = TraversalStack::default();
     let mut hits = 0;
     for (i, ray) in random_rays(6000).iter().enumerate() {
-        let ours = aggregate.intersect(ray, PassedBodies::None, &mut stack);
+        let ours = aggregate.intersect(ray, RayFilter::default(), &mut stack);
         let truth = brute_force(aggregate.instances(), ray);
         // Of two triangles at one distance either may be returned; the distance has the same bits.
         assert_eq!(ours.map(|h| h.t), truth.map(|(_, h)| h.t), "ray {i}: {ray:?}");
-        assert_eq!(aggregate.occluded(ray, PassedBodies::None, &mut stack), truth.is_some(), "ray {i}: {ray:?}");
+        assert_eq!(aggregate.occluded(ray, RayFilter::default(), &mut stack), truth.is_some(), "ray {i}: {ray:?}");
         // The scalar kernels return the same bits.
         let scalar =
-            Intersect { aggregate: &aggregate, ray, passed: PassedBodies::None, stack: &mut stack }.run::<Scalar>();
+            Intersect { aggregate: &aggregate, ray, filter: RayFilter::default(), stack: &mut stack }.run::<Scalar>();
         assert_eq!(scalar.map(|h| h.primitive), ours.map(|h| h.primitive), "ray {i}: {ray:?}");
         let scalar =
-            Occluded { aggregate: &aggregate, ray, passed: PassedBodies::None, stack: &mut stack }.run::<Scalar>();
+            Occluded { aggregate: &aggregate, ray, filter: RayFilter::default(), stack: &mut stack }.run::<Scalar>();
         assert_eq!(scalar, truth.is_some(), "ray {i}: {ray:?}");
         hits += usize::from(truth.is_some());
     }
@@ -111,7 +111,7 @@ fn of_ten_thousand_spheres_few_are_merged_and_all_are_hit() {
     let sphere = Arc::new(MeshGeometry::new(Arc::new(soup(100))));
     let transform = |i: u32| Affine3A::from_translation(Vec3::new(10.0 * i as f32, 0.0, 0.0));
     let instances: Vec<Instance> =
-        (0..10_000).map(|i| Instance::new(sphere.clone(), transform(i), i, vec![0]).unwrap()).collect();
+        (0..10_000).map(|i| Instance::new(sphere.clone(), transform(i), i, vec![0], None).unwrap()).collect();
     let aggregate = Aggregate::new(instances);
     assert!(aggregate.merged.triangles.len() <= MAX_MERGED_TOTAL && aggregate.tlas_entries.len() > 7_000);
     let mut stack = TraversalStack::default();
@@ -122,7 +122,7 @@ fn of_ten_thousand_spheres_few_are_merged_and_all_are_hit() {
             let offset = Vec3::new(((k % 8) as f32 + 0.5) / 8.0, ((k / 8) as f32 + 0.5) / 8.0, 0.0);
             let origin = low + (high - low) * offset - Vec3::Z;
             let ray = Ray { origin, direction: Vec3::Z, t_max: f32::INFINITY };
-            aggregate.intersect(&ray, PassedBodies::None, &mut stack).is_some_and(|hit| hit.instance as usize == i)
+            aggregate.intersect(&ray, RayFilter::default(), &mut stack).is_some_and(|hit| hit.instance as usize == i)
         });
         assert!(count.count() > 10, "sphere {i}");
     }
@@ -132,7 +132,7 @@ fn of_ten_thousand_spheres_few_are_merged_and_all_are_hit() {
 fn rays_miss_an_empty_studio() {
     let aggregate = Aggregate::new(vec![instance(Mesh::default().with_single_part("none"), Affine3A::IDENTITY, 0)]);
     let ray = Ray { origin: Vec3::ZERO, direction: Vec3::Z, t_max: f32::INFINITY };
-    assert!(aggregate.intersect(&ray, PassedBodies::None, &mut TraversalStack::default()).is_none());
+    assert!(aggregate.intersect(&ray, RayFilter::default(), &mut TraversalStack::default()).is_none());
 }
 
 #[test]
@@ -147,12 +147,12 @@ fn rays_that_leave_a_floor_through_the_world_origin_do_not_hit_it_again() {
         let origin = Vec3::new(next() * 4.0 - 2.0, 2.0 * next(), next() * 4.0 - 2.0);
         let direction = -warp::cosine_hemisphere(Vec2::new(next(), next())).xzy();
         let ray = Ray { origin, direction, t_max: f32::INFINITY };
-        let Some(hit) = aggregate.intersect(&ray, PassedBodies::None, &mut stack) else { continue };
+        let Some(hit) = aggregate.intersect(&ray, RayFilter::default(), &mut stack) else { continue };
         let surface = aggregate.surface(&hit);
         let away = warp::cosine_hemisphere(Vec2::new(next(), next())).xzy();
         let away = Ray { origin: surface.spawn_origin(away), direction: away, t_max: f32::INFINITY };
         assert!(
-            aggregate.intersect(&away, PassedBodies::None, &mut stack).is_none(),
+            aggregate.intersect(&away, RayFilter::default(), &mut stack).is_none(),
             "left the floor and hit it: {ray:?} {away:?}"
         );
     }
@@ -172,20 +172,20 @@ fn a_million_rays_neither_hit_the_triangle_they_leave_nor_leak_from_a_sphere() {
             let out = warp::uniform_sphere(Vec2::new(next(), next()));
             let inside = Ray { origin, direction: out, t_max: f32::INFINITY };
             let hit =
-                aggregate.intersect(&inside, PassedBodies::None, &mut stack).expect("a ray from the centre leaked");
+                aggregate.intersect(&inside, RayFilter::default(), &mut stack).expect("a ray from the centre leaked");
             let surface = aggregate.surface(&hit);
             // Outwards: a ray from the surface of a convex body does not hit it.
             let local = warp::cosine_hemisphere(Vec2::new(next(), next()));
             let (t, b) = crate::math::orthonormal_basis(surface.geometric_normal);
             let direction = t * local.x + b * local.y + surface.geometric_normal * local.z.max(1e-3);
             let away = Ray { origin: surface.spawn_origin(direction), direction, t_max: f32::INFINITY };
-            if let Some(again) = aggregate.intersect(&away, PassedBodies::None, &mut stack) {
+            if let Some(again) = aggregate.intersect(&away, RayFilter::default(), &mut stack) {
                 // The tessellated sphere is convex up to rounding: a grazing ray may hit an adjacent triangle.
                 assert_ne!(again.triangle().triangle, hit.triangle().triangle, "left and hit the same triangle");
             }
             // Inwards: the ray must hit the other side.
             let inwards = Ray { origin: surface.spawn_origin(-direction), direction: -direction, t_max: f32::INFINITY };
-            assert!(aggregate.intersect(&inwards, PassedBodies::None, &mut stack).is_some(), "a ray leaked at {far}");
+            assert!(aggregate.intersect(&inwards, RayFilter::default(), &mut stack).is_some(), "a ray leaked at {far}");
         }
     }
 }

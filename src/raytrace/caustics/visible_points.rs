@@ -9,6 +9,7 @@ use crate::raytrace::medium_stack::MediumStack;
 use crate::raytrace::ray_caster::RayCaster;
 use crate::raytrace::render_scene::RenderScene;
 use crate::raytrace::sampler::{self, Dimensions, Sampler};
+use crate::raytrace::strand_detail::RayFilter;
 use glam::Vec3;
 use std::collections::BTreeMap;
 
@@ -132,7 +133,7 @@ fn trace_path(
     let (mut media, mut polarisation, mut travelled) = (MediumStack::default(), Polarisation::NONE, 0.0);
     for depth in 0..scene.plan().max_depth {
         let passed = if depth == 0 { PassedBodies::Hidden } else { PassedBodies::None };
-        let Some(hit) = caster.intersect_passing(&ray, passed) else { return };
+        let Some(hit) = caster.intersect_filtered(&ray, RayFilter::seen(passed)) else { return };
         let surface = scene.surface(&ray, &hit);
         travelled += hit.t;
         let wo = -ray.direction;

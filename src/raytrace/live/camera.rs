@@ -1,6 +1,7 @@
 //! The camera of the live view.
 
 use crate::raytrace::lens::{Aperture, Lens, PixelCamera};
+use crate::raytrace::strand_detail::StrandView;
 use crate::scene::{CameraFrame, Room, Scene};
 use glam::{Vec2, Vec3};
 
@@ -73,6 +74,11 @@ impl LiveCamera {
     /// The lens centre, relative to the tracer's origin.
     pub(super) fn eye(&self) -> Vec3 {
         self.frame.position() - self.origin
+    }
+
+    /// Returns the view for which strands are thinned.
+    pub(super) fn strand_view(&self) -> StrandView {
+        StrandView { position: self.eye(), pixel_m: self.pixel_m() }
     }
 
     /// Projects a point relative to the tracer's origin to pixels from the top left; `None` behind the eye.

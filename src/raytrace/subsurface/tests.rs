@@ -38,7 +38,7 @@ impl Body {
         let geometry = Arc::new(MeshGeometry::new(Arc::new(mesh)));
         let indices = (0..materials.len() as u32).collect();
         Body {
-            instance: Instance::new(geometry, Affine3A::IDENTITY, 0, indices).unwrap(),
+            instance: Instance::new(geometry, Affine3A::IDENTITY, 0, indices, None).unwrap(),
             materials: materials.iter().map(TracedMaterial::new).collect(),
             stack: TraversalStack::default(),
         }

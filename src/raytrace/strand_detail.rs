@@ -1,0 +1,145 @@
+//! Levels of detail of strands: fewer and thicker ones where a picture shows no single strand.
+//!
+//! Of every so many strands one is kept, as many times as wide: the length of a ray's way through hair is the same on
+//! average (strands per volume times their width), and so is the light, for the BSDF of a fibre does not depend on its
+//! width. What is lost is the pattern of single strands, so that a level is taken where a kept strand is still narrow
+//! beside a pixel. Shadows and scattered light show less of the pattern than what the camera sees: they take a coarser
+//! level.
+
+use super::geometry::PassedBodies;
+use glam::Vec3;
+
+/// Most strands in place of which one is kept, as a power of two.
+const COARSEST: u8 = 3;
+/// Parts of a mesh with fewer strands than this keep all of them: brows and lashes.
+pub const MIN_THINNED: usize = 4000;
+/// Width of a kept strand that the camera sees, pixels at most.
+const SEEN_PX: f32 = 0.5;
+/// Width of a kept strand in shadows and for scattered light, pixels at most.
+const LIGHTING_PX: f32 = 1.5;
+/// Least distance from which strands are looked at, metres.
+const MIN_DISTANCE_M: f32 = 0.05;
+
+/// A level of detail: one strand of so many is kept, a power of two, as many times as wide.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub struct StrandLevel(u8);
+
+impl StrandLevel {
+    /// All strands.
+    pub const ALL: StrandLevel = StrandLevel(0);
+    /// The coarsest level.
+    pub const COARSEST: StrandLevel = StrandLevel(COARSEST);
+    /// Number of levels.
+    pub const COUNT: usize = COARSEST as usize + 1;
+
+    /// Returns the coarsest level at which strands of a width are at most `most` wide, both in the same unit.
+    fn narrower_than(most: f32, width: f32) -> Self {
+        (0..=COARSEST).rev().map(StrandLevel).find(|level| width * level.width() <= most).unwrap_or(Self::ALL)
+    }
+
+    /// Returns the index of the level, from that of all strands.
+    pub fn index(self) -> usize {
+        self.0.into()
+    }
+
+    /// Returns the number of strands of which one is kept.
+    pub fn every(self) -> usize {
+        1 << self.0
+    }
+
+    /// Returns the factor on the width of a kept strand.
+    pub fn width(self) -> f32 {
+        self.every() as f32
+    }
+}
+
+/// What a ray is traced for, as far as its level of detail depends on it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub enum StrandUse {
+    /// What the camera sees, directly or by mirrors and glass.
+    #[default]
+    Seen,
+    /// Shadows and scattered light.
+    Lighting,
+}
+
+/// What a ray passes, and which strands it meets.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct RayFilter {
+    /// The bodies of lights that it passes.
+    pub passed: PassedBodies,
+    /// The strands that it meets.
+    pub strands: StrandUse,
+}
+
+impl RayFilter {
+    /// For a ray from the camera, or from it by mirrors and glass.
+    pub fn seen(passed: PassedBodies) -> Self {
+        RayFilter { passed, strands: StrandUse::Seen }
+    }
+
+    /// For the ray of a camera path after so many vertices, and so many non-specular ones among them.
+    #[inline(always)]
+    pub fn of_path(depth: u32, non_specular_depth: u32) -> Self {
+        let passed = if depth == 0 { PassedBodies::Hidden } else { PassedBodies::None };
+        let strands = if non_specular_depth == 0 { StrandUse::Seen } else { StrandUse::Lighting };
+        RayFilter { passed, strands }
+    }
+
+    /// For a shadow ray, or one that a surface scattered.
+    pub fn lighting(passed: PassedBodies) -> Self {
+        RayFilter { passed, strands: StrandUse::Lighting }
+    }
+}
+
+/// The camera for whose pictures strands are thinned.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StrandView {
+    /// Position, in the space of the instances.
+    pub position: Vec3,
+    /// Width of a pixel at 1 m, metres.
+    pub pixel_m: f32,
+}
+
+/// The levels of detail of a mesh's strands.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub struct StrandLevels {
+    /// Of what the camera sees.
+    pub seen: StrandLevel,
+    /// Of shadows and scattered light.
+    pub lighting: StrandLevel,
+}
+
+impl StrandView {
+    /// Returns the levels for strands of a mean width within a bounding box.
+    pub fn levels(&self, (low, high): (Vec3, Vec3), width_m: f32) -> StrandLevels {
+        let distance_m = self.position.distance(self.position.clamp(low, high)).max(MIN_DISTANCE_M);
+        let width_px = width_m / (self.pixel_m * distance_m);
+        StrandLevels {
+            seen: StrandLevel::narrower_than(SEEN_PX, width_px),
+            lighting: StrandLevel::narrower_than(LIGHTING_PX, width_px),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn strands_are_thinned_until_they_are_as_wide_as_the_limits() {
+        // Seen from 2 m, a pixel is 0.4 mm wide
+        let view = StrandView { position: Vec3::Z * 2.1, pixel_m: 2e-4 };
+        let head = (Vec3::splat(-0.1), Vec3::splat(0.1));
+        let every = |width_m| {
+            let levels = view.levels(head, width_m);
+            (levels.seen.every(), levels.lighting.every())
+        };
+        assert_eq!(every(1e-3), (1, 1), "thicker than a pixel");
+        assert_eq!(every(1.2e-4), (1, 4), "0.3 pixels");
+        assert_eq!(every(0.9e-4), (2, 4), "0.225 pixels");
+        assert_eq!(every(1e-6), (8, 8), "no more than the coarsest level");
+        let near = StrandView { position: Vec3::ZERO, ..view };
+        assert_eq!(near.levels(head, 1.2e-4), StrandLevels::default(), "within the hair");
+    }
+}
