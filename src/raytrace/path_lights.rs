@@ -67,7 +67,7 @@ impl<'a> PathTracer<'a> {
         let ShadingPoint { surface, bsdf, .. } = *point;
 
         // Sample a direction towards the light and evaluate the BSDF
-        let Some(sample) = light.sample(surface.position, sampler::first_pair(set)) else { return };
+        let Some(sample) = &light.sample(surface.position, sampler::first_pair(set)) else { return };
         let (value, bsdf_pdf) = bsdf.eval(sample.direction);
         if value == Vec3::ZERO && point.control.is_none() {
             return;
@@ -86,7 +86,7 @@ impl<'a> PathTracer<'a> {
         if bsdf.enters_body(sample.direction) {
             media.cross(surface.material, point.outside);
         }
-        let connection = self.caster.connect(surface.spawn_origin(sample.direction), light, &sample, media);
+        let connection = self.caster.connect(surface.spawn_origin(sample.direction), light, sample, media);
         let Some(Connection { direction, value: light_value, pdf, transmittance }) = connection else {
             sink.record(|| event(sample.pdf, bsdf_pdf, Vec3::ZERO, 0.0));
             return;

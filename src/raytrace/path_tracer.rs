@@ -180,8 +180,8 @@ impl<'a> PathTracer<'a> {
         let scene = self.caster.scene;
         loop {
             // Intersect the ray with the studio
-            let filter = RayFilter::of_path(path.depth, path.non_specular_depth);
-            let hit = self.caster.intersect_filtered(&path.ray, filter);
+            let hit =
+                self.caster.intersect_filtered(&path.ray, RayFilter::of_path(path.depth, path.non_specular_depth));
             let distance = hit.map_or(f32::INFINITY, |hit| hit.t);
 
             // Add the light of emitters in front of the surface
@@ -193,16 +193,16 @@ impl<'a> PathTracer<'a> {
                 let PathState { ray, throughput, mis_vertex, media, .. } = &*path;
                 self.caster.add_emitter_hits(ray, hit.as_ref(), *throughput, mis_vertex, media, sink);
             }
-            let Some(hit) = hit else {
+            let Some(hit) = &hit else {
                 sink.record(|| PathEvent::Miss);
                 return;
             };
-            let surface = scene.surface(&path.ray, &hit);
+            let surface = scene.surface(&path.ray, hit);
             let material = &scene.materials[surface.material as usize];
             let wo = -path.ray.direction;
             let outside = wo.dot(surface.geometric_normal) >= 0.0;
             if path.depth == 0 {
-                sink.first_hit(|| scene.first_hit(&path.ray, &hit, &surface));
+                sink.first_hit(|| scene.first_hit(&path.ray, hit, &surface));
             }
 
             if path.non_specular_depth == 0 {
@@ -220,7 +220,7 @@ impl<'a> PathTracer<'a> {
                 };
             }
             sink.record(|| {
-                let (object, part) = scene.object_and_part(&hit);
+                let (object, part) = scene.object_and_part(hit);
                 PathEvent::Vertex(PathVertex {
                     depth: path.depth,
                     position: surface.position,
@@ -253,7 +253,7 @@ impl<'a> PathTracer<'a> {
             }
             let bsdf = scene.bsdf(&surface, wo, &path.media, path.polarisation);
             let point = ShadingPoint {
-                hit: &hit,
+                hit,
                 surface: &surface,
                 bsdf: &bsdf,
                 importances: None,
@@ -423,7 +423,7 @@ impl<'a> PathTracer<'a> {
 
         // Sample the BSDF
         let [lobe, roulette] = sampler::last_pair(bsdf_set);
-        let Some(sample) = bsdf.sample(point.lobe_choice.unwrap_or(lobe), sampler::first_pair(bsdf_set)) else {
+        let Some(sample) = &bsdf.sample(point.lobe_choice.unwrap_or(lobe), sampler::first_pair(bsdf_set)) else {
             sink.record(|| PathEvent::End(PathEnd::Absorbed));
             return false;
         };
@@ -441,7 +441,7 @@ impl<'a> PathTracer<'a> {
             path.media.cross(surface.material, outside);
         }
         sink.record(|| PathEvent::BsdfSample {
-            lobe: Lobe::of(&sample),
+            lobe: Lobe::of(sample),
             direction: sample.direction,
             pdf: (!sample.specular).then_some(sample.pdf),
             weight: sample.weight,

@@ -114,6 +114,11 @@ impl RenderScene {
             return Bsdf::of_fibre(fibre, strand.tangent, strand.h, wo);
         }
         let factors = self.texture_factors(surface);
+        let is_plain = !self.plan.normal_maps && !self.plan.tangents && !self.plan.subsurface && !material.transmits();
+        if is_plain {
+            // Built in place: copies of it are seen in the time of a room without figures
+            return Bsdf::new(material, factors, surface.normal, surface.geometric_normal, wo);
+        }
         let mut bsdf = Bsdf::new(material, factors, surface.normal, surface.geometric_normal, wo);
         if self.plan.normal_maps && surface.relief_normal != surface.normal {
             bsdf = bsdf.with_relief(surface.relief_normal);

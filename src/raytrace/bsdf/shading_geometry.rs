@@ -49,16 +49,19 @@ impl ShadingGeometry {
     }
 
     /// Transforms a local direction to world space.
+    #[inline(always)]
     pub fn to_world(self, w: Vec3) -> Vec3 {
         self.tangent * w.x + self.bitangent * w.y + self.normal * w.z
     }
 
     /// Transforms a world direction to the local frame.
+    #[inline(always)]
     pub fn to_local(self, w: Vec3) -> Vec3 {
         Vec3::new(w.dot(self.tangent), w.dot(self.bitangent), w.dot(self.normal))
     }
 
     /// Returns true if a world direction is on the side of the outgoing direction.
+    #[inline(always)]
     pub fn is_above(&self, direction: Vec3) -> bool {
         direction.dot(self.geometric_normal) > 0.0
     }

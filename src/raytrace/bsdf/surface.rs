@@ -25,6 +25,7 @@ pub struct SurfaceBsdf<'a> {
 impl<'a> SurfaceBsdf<'a> {
     /// Returns the BSDF for the outgoing direction `wo` (unit, world space), outward normals and texture values. A
     /// clear material is a body in air; see [`SurfaceBsdf::with_boundary`] for others.
+    #[inline(always)]
     pub fn new(
         material: &'a TracedMaterial,
         textures: impl Into<TextureFactors>,
