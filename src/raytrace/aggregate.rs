@@ -9,8 +9,9 @@
 use super::blas::Blas;
 use super::bvh::{self, TraversalStack, WideBvh};
 use super::geometry::{Instance, MeshGeometry, SurfaceInteraction};
+use super::ray_filter::RayFilter;
 use super::simd::{self, KernelTask, Kernels, SlabRay, TriangleHit};
-use super::strand_detail::{RayFilter, StrandLevel, StrandLevels, StrandUse, StrandView};
+use super::strand_detail::{StrandLevel, StrandLevels, StrandUse, StrandView};
 use super::strand_geometry::StrandHit;
 use super::strand_surface;
 use crate::math::Ray;

@@ -6,7 +6,7 @@
 use super::aggregate::{Hit, Primitive};
 use super::geometry::PassedBodies;
 use super::ray_caster::{RayCaster, shadow_ray_end};
-use super::strand_detail::RayFilter;
+use super::ray_filter::RayFilter;
 use crate::math::Ray;
 use glam::Vec3;
 

@@ -5,7 +5,6 @@ use super::bvh::TraversalStack;
 use super::simd::{Kernels, SlabRay, TriangleHit};
 use super::strand_detail::{StrandLevel, StrandLevels, StrandView};
 use super::strand_geometry::{StrandBlases, StrandGeometry};
-use super::strand_surface::largest_scale;
 use crate::math::{self, Ray, gamma};
 use crate::scene::{LightId, Mesh};
 use glam::{Affine2, Affine3A, Mat3A, Vec2, Vec3, Vec3A};
@@ -158,7 +157,7 @@ impl Instance {
     pub fn thin_strands(&mut self, view: Option<&StrandView>) {
         let strands = &self.geometry.mesh.strands;
         let Some(bounds) = self.strand_bounds() else { return };
-        let width_m = self.geometry.strands.width_m() * largest_scale(&self.world_from_object.matrix3);
+        let width_m = self.geometry.strands.width_m() * self.largest_scale();
         let levels = view.map_or(StrandLevels::default(), |view| view.levels(bounds, width_m));
         if self.strands.as_ref().is_none_or(|known| known.levels() != levels) {
             self.strands = Some(self.geometry.strands.blases(strands, levels));
@@ -201,6 +200,13 @@ impl Instance {
         let world_centre = self.world_from_object.transform_point3(centre);
         let slack = (world_centre.abs() + extent) * gamma(8);
         (world_centre - extent - slack, world_centre + extent + slack)
+    }
+
+    /// Returns the largest factor by which the transform scales the axes.
+    pub(super) fn largest_scale(&self) -> f32 {
+        let matrix = self.world_from_object.matrix3;
+        let columns = [matrix.x_axis, matrix.y_axis, matrix.z_axis];
+        columns.into_iter().map(Vec3A::length_squared).fold(0.0, f32::max).sqrt()
     }
 
     /// Returns the corners of a triangle in world space.

@@ -47,6 +47,7 @@ mod plan;
 mod prepare;
 mod primary_objects;
 mod ray_caster;
+mod ray_filter;
 mod render;
 mod render_part;
 mod render_scene;

@@ -16,11 +16,11 @@ use super::lights::LightImportances;
 use super::limits::PathLimits;
 use super::medium_stack::MediumStack;
 use super::ray_caster::RayCaster;
+use super::ray_filter::RayFilter;
 use super::render_scene::RenderScene;
 use super::roulette::{survival_probability, survives};
 use super::sampler::{self, Dimensions, Sampler};
 use super::sink::RadianceSink;
-use super::strand_detail::RayFilter;
 use crate::math::Ray;
 use glam::Vec3;
 
@@ -182,7 +182,7 @@ impl<'a> PathTracer<'a> {
             // Intersect the ray with the studio
             let hit =
                 self.caster.intersect_filtered(&path.ray, RayFilter::of_path(path.depth, path.non_specular_depth));
-            let distance = hit.map_or(f32::INFINITY, |hit| hit.t);
+            let distance = hit.as_ref().map_or(f32::INFINITY, |hit| hit.t);
 
             // Add the light of emitters in front of the surface
             if path.depth == 0 {

@@ -3,8 +3,8 @@
 use super::aggregate::Hit;
 use super::bvh::TraversalStack;
 use super::geometry::PassedBodies;
+use super::ray_filter::RayFilter;
 use super::render_scene::RenderScene;
-use super::strand_detail::RayFilter;
 use crate::math::Ray;
 use glam::Vec3;
 
@@ -49,8 +49,11 @@ impl<'a> RayCaster<'a> {
 
     /// Returns the closest hit of a ray with what its filter leaves.
     pub fn intersect_filtered(&mut self, ray: &Ray, filter: RayFilter) -> Option<Hit> {
+        if !self.scene.plan().coverage {
+            return self.intersect_all(ray, filter);
+        }
         let hit = self.intersect_all(ray, filter)?;
-        if self.scene.plan().coverage { self.meet(ray, hit, filter) } else { Some(hit) }
+        self.meet(ray, hit, filter)
     }
 
     /// Returns the closest hit, also of a surface that is not there.

@@ -113,31 +113,35 @@ impl RenderScene {
         if let (Some(strand), Some(fibre)) = (&surface.strand, material.fibre()) {
             return Bsdf::of_fibre(fibre, strand.tangent, strand.h, wo);
         }
+        self.surface_bsdf(material, surface, wo, media, polarisation)
+    }
+
+    /// As [`RenderScene::bsdf`], of a surface that is no fibre. It is completed in place: copies of it cost time.
+    fn surface_bsdf<'a>(
+        &'a self,
+        material: &'a TracedMaterial,
+        surface: &SurfaceInteraction,
+        wo: Vec3,
+        media: &MediumStack,
+        polarisation: Polarisation,
+    ) -> Bsdf<'a> {
         let factors = self.texture_factors(surface);
-        let is_plain = !self.plan.normal_maps && !self.plan.tangents && !self.plan.subsurface && !material.transmits();
-        if is_plain {
-            // Built in place: copies of it are seen in the time of a room without figures
-            return Bsdf::new(material, factors, surface.normal, surface.geometric_normal, wo);
-        }
         let mut bsdf = Bsdf::new(material, factors, surface.normal, surface.geometric_normal, wo);
         if self.plan.normal_maps && surface.relief_normal != surface.normal {
-            bsdf = bsdf.with_relief(surface.relief_normal);
+            bsdf.set_relief(surface.relief_normal);
         }
         if self.plan.tangents && surface.tangent != Vec3::ZERO {
-            bsdf = bsdf.with_tangent(surface.tangent);
+            bsdf.set_tangent(surface.tangent);
         }
         let outside = wo.dot(surface.geometric_normal) >= 0.0;
         if self.plan.subsurface && outside && surface.strand.is_none() && material.extinction_per_m().is_some() {
-            return bsdf.with_subsurface();
+            bsdf.set_subsurface();
+        } else if material.transmits() {
+            let interface = || media.interface(&self.materials, surface.material, outside);
+            let boundary = if surface.is_thin { Boundary::ThinPane } else { Boundary::Interface(interface()) };
+            bsdf.set_boundary(boundary, polarisation);
         }
-        if !material.transmits() {
-            return bsdf;
-        }
-        let interface = || media.interface(&self.materials, surface.material, outside);
-        bsdf.with_boundary(
-            if surface.is_thin { Boundary::ThinPane } else { Boundary::Interface(interface()) },
-            polarisation,
-        )
+        bsdf
     }
 
     /// The reflectance at a surface, for the albedo AOV and ambient light.

@@ -6,7 +6,6 @@
 //! beside a pixel. Shadows and scattered light show less of the pattern than what the camera sees: they take a coarser
 //! level.
 
-use super::geometry::PassedBodies;
 use glam::Vec3;
 
 /// Most strands in place of which one is kept, as a power of two.
@@ -61,35 +60,6 @@ pub enum StrandUse {
     Seen,
     /// Shadows and scattered light.
     Lighting,
-}
-
-/// What a ray passes, and which strands it meets.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct RayFilter {
-    /// The bodies of lights that it passes.
-    pub passed: PassedBodies,
-    /// The strands that it meets.
-    pub strands: StrandUse,
-}
-
-impl RayFilter {
-    /// For a ray from the camera, or from it by mirrors and glass.
-    pub fn seen(passed: PassedBodies) -> Self {
-        RayFilter { passed, strands: StrandUse::Seen }
-    }
-
-    /// For the ray of a camera path after so many vertices, and so many non-specular ones among them.
-    #[inline(always)]
-    pub fn of_path(depth: u32, non_specular_depth: u32) -> Self {
-        let passed = if depth == 0 { PassedBodies::Hidden } else { PassedBodies::None };
-        let strands = if non_specular_depth == 0 { StrandUse::Seen } else { StrandUse::Lighting };
-        RayFilter { passed, strands }
-    }
-
-    /// For a shadow ray, or one that a surface scattered.
-    pub fn lighting(passed: PassedBodies) -> Self {
-        RayFilter { passed, strands: StrandUse::Lighting }
-    }
 }
 
 /// The camera for whose pictures strands are thinned.

@@ -4,7 +4,7 @@ use super::geometry::{Instance, StrandCoordinates, SurfaceInteraction};
 use super::simd::SegmentHit;
 use super::strand_geometry::StrandHit;
 use crate::math::orthonormal_basis;
-use glam::{Mat3A, Vec2, Vec3, Vec3A};
+use glam::{Vec2, Vec3, Vec3A};
 
 /// Ray origins are offset by this many radii, so that a ray leaves the fibre that it starts on: 1, and a margin for the
 /// rounding of a narrow ribbon's width.
@@ -27,7 +27,7 @@ pub fn surface(instance: &Instance, hit: &StrandHit) -> SurfaceInteraction {
     let across = facing.cross(along) * h;
 
     // Bound the error so that rays which leave in any direction clear the fibre
-    let radius = (a.radius_m + s * (b.radius_m - a.radius_m)) * largest_scale(&matrix) * hit.level.width();
+    let radius = (a.radius_m + s * (b.radius_m - a.radius_m)) * instance.largest_scale() * hit.level.width();
     let rounding = instance.world_error(local, local.abs() * crate::math::gamma(8));
     let position_error = Vec3::from(rounding) + SPAWN_RADII * radius;
 
@@ -61,10 +61,4 @@ fn frame(along: Vec3, ray_direction: Vec3) -> (Vec3, Vec3) {
     let perpendicular = along * along.dot(ray_direction) - ray_direction;
     // A ray along the fibre hits its end from no side in particular.
     (perpendicular.try_normalize().unwrap_or_else(|| orthonormal_basis(along).0), along)
-}
-
-/// Returns the largest factor by which a transform scales the axes.
-pub(super) fn largest_scale(matrix: &Mat3A) -> f32 {
-    let columns = [matrix.x_axis, matrix.y_axis, matrix.z_axis];
-    columns.into_iter().map(Vec3A::length_squared).fold(0.0, f32::max).sqrt()
 }

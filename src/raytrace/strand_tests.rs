@@ -3,8 +3,9 @@
 use super::aggregate::{Aggregate, Hit, Primitive};
 use super::bvh::TraversalStack;
 use super::geometry::{Instance, MeshGeometry};
+use super::ray_filter::RayFilter;
 use super::simd::{LANES, RibbonRay, SegmentHit, SegmentPacket};
-use super::strand_detail::{RayFilter, StrandLevel, StrandLevels, StrandView};
+use super::strand_detail::{StrandLevel, StrandLevels, StrandView};
 use super::strand_geometry::StrandHit;
 use super::{GeometryCache, Method, Purpose, RenderControl, RenderScene, Settings, prepare, prepare_for, render};
 use crate::math::Ray;

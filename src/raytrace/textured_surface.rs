@@ -12,49 +12,55 @@ use glam::{Affine2, Vec3};
 impl RenderScene {
     /// Returns the surface interaction at a hit of a ray, with the normal of its normal map.
     pub(super) fn surface(&self, ray: &Ray, hit: &Hit) -> SurfaceInteraction {
-        let surface = self.aggregate.surface(hit);
-        let surface = if self.plan.normal_maps { self.with_normal_map(surface, ray.direction, hit) } else { surface };
-        if self.plan.tangents { self.with_tangent(surface, hit) } else { surface }
+        let mut surface = self.aggregate.surface(hit);
+        if self.plan.normal_maps {
+            self.apply_normal_map(&mut surface, ray.direction, hit);
+        }
+        if self.plan.tangents {
+            self.add_tangent(&mut surface, hit);
+        }
+        surface
     }
 
     /// Adds the direction across the grooves of a brushed surface: the texture's U axis, turned. Without texture
     /// coordinates, U is horizontal.
-    fn with_tangent(&self, surface: SurfaceInteraction, hit: &Hit) -> SurfaceInteraction {
-        let material = self.material_of(&surface);
-        let Primitive::Triangle(triangle) = &hit.primitive else { return surface };
+    fn add_tangent(&self, surface: &mut SurfaceInteraction, hit: &Hit) {
+        let material = self.material_of(surface);
+        let Primitive::Triangle(triangle) = &hit.primitive else { return };
         if !material.is_brushed() {
-            return surface;
+            return;
         }
         let instance = &self.aggregate.instances()[hit.instance as usize];
         let derivatives = instance.position_derivatives(triangle.triangle, false, &Affine2::IDENTITY);
         let along_u = derivatives.map_or_else(|| Vec3::Y.cross(surface.normal), |[along_u, _]| along_u);
         let across_u = surface.normal.cross(along_u);
         let (sin, cos) = material.brushing_angle().sin_cos();
-        SurfaceInteraction { tangent: along_u * cos + across_u * sin, ..surface }
+        surface.tangent = along_u * cos + across_u * sin;
     }
 
     /// Replaces the shading normal by that of the normal map, bent so that the mirror direction of the ray stays above
     /// the surface. The diffuse lobe has no such direction: it keeps the normal of the map, or relief that leans away
     /// from the viewer would be lit as if it faced him. Light that comes out of a soft surface was spread under it, farther
     /// than relief is wide: it has the normal without the map.
-    fn with_normal_map(&self, surface: SurfaceInteraction, direction: Vec3, hit: &Hit) -> SurfaceInteraction {
-        let material = self.material_of(&surface);
+    fn apply_normal_map(&self, surface: &mut SurfaceInteraction, direction: Vec3, hit: &Hit) {
+        let material = self.material_of(surface);
         let (Some(map), Primitive::Triangle(triangle)) = (self.texture(material, TextureSlot::Normal), &hit.primitive)
         else {
-            return surface;
+            return;
         };
         let instance = &self.aggregate.instances()[hit.instance as usize];
         let derivatives =
             instance.position_derivatives(triangle.triangle, map.uses_second_uvs(), map.picture_from_mesh());
-        let Some(derivatives) = derivatives else { return surface };
-        let tilt = decode_normal(map.at_surface(&surface), material.normal_scale);
+        let Some(derivatives) = derivatives else { return };
+        let tilt = decode_normal(map.at_surface(surface), material.normal_scale);
         let relief_normal = tilted_normal(surface.normal, derivatives, tilt);
         // From behind, the same relief is seen from its back
         let side = if direction.dot(surface.geometric_normal) > 0.0 { -1.0 } else { 1.0 };
         let view_dir = -direction.normalize_or_zero();
         let normal = bend_above(relief_normal * side, surface.geometric_normal * side, view_dir) * side;
         let is_soft = self.plan.subsurface && material.extinction_per_m().is_some();
-        SurfaceInteraction { normal, relief_normal: if is_soft { surface.normal } else { relief_normal }, ..surface }
+        surface.relief_normal = if is_soft { surface.normal } else { relief_normal };
+        surface.normal = normal;
     }
 
     /// Returns the material of a surface.

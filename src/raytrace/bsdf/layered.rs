@@ -90,14 +90,14 @@ impl<'a> LayeredBsdf<'a> {
         .prepared()
     }
 
-    /// Returns the same BSDF whose brushing is across `tangent`, world space.
-    pub fn with_tangent(self, tangent: Vec3) -> Self {
-        LayeredBsdf { geometry: self.geometry.with_tangent(tangent), ..self }.prepared()
+    /// Lays the brushing across `tangent`, world space.
+    pub fn set_tangent(&mut self, tangent: Vec3) {
+        *self = LayeredBsdf { geometry: self.geometry.with_tangent(tangent), ..*self }.prepared();
     }
 
-    /// Returns the same BSDF with this boundary, for a path that accepts this polarisation.
-    pub fn with_boundary(self, boundary: Boundary, polarisation: Polarisation) -> Self {
-        LayeredBsdf { dielectric: DielectricLobe { boundary, polarisation, ..self.dielectric }, ..self }
+    /// Returns the dielectric lobe.
+    pub fn dielectric_mut(&mut self) -> &mut DielectricLobe {
+        &mut self.dielectric
     }
 
     /// Computes what depends on the outgoing direction alone.

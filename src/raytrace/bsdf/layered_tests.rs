@@ -25,8 +25,10 @@ const BOUNDARIES: [Boundary; 3] = [
 ];
 
 fn bsdf(material: &TracedMaterial, wo: Vec3, boundary: Boundary) -> Bsdf<'_> {
-    let bsdf = Bsdf::new(material, Vec3::ONE, Vec3::Z, Vec3::Z, wo).with_tangent(Vec3::X);
-    bsdf.with_boundary(boundary, Polarisation::NONE)
+    let mut bsdf = Bsdf::new(material, Vec3::ONE, Vec3::Z, Vec3::Z, wo);
+    bsdf.set_tangent(Vec3::X);
+    bsdf.set_boundary(boundary, Polarisation::NONE);
+    bsdf
 }
 
 /// Materials with each of the layers, and with several.

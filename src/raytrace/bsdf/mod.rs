@@ -76,7 +76,7 @@ pub enum Bsdf<'a> {
 
 impl<'a> Bsdf<'a> {
     /// Returns the BSDF of a surface for the outgoing direction `wo` (unit, world space), outward normals and texture
-    /// values. A clear material is a body in air; see [`Bsdf::with_boundary`] for others.
+    /// values. A clear material is a body in air; see [`Bsdf::set_boundary`] for others.
     pub fn new(
         material: &'a TracedMaterial,
         textures: impl Into<TextureFactors>,
@@ -92,30 +92,29 @@ impl<'a> Bsdf<'a> {
         }
     }
 
-    /// Returns the same BSDF whose brushing is across `tangent`, world space.
-    pub fn with_tangent(self, tangent: Vec3) -> Self {
-        match self {
-            Bsdf::Layered(layered) => Bsdf::Layered(layered.with_tangent(tangent)),
-            Bsdf::Surface(_) | Bsdf::Fibre(_) => self,
+    /// Lays the brushing across `tangent`, world space.
+    pub fn set_tangent(&mut self, tangent: Vec3) {
+        if let Bsdf::Layered(layered) = self {
+            layered.set_tangent(tangent);
         }
     }
 
-    /// Returns the same BSDF whose diffuse lobe has this outward normal, world space: its normal was bent towards the
-    /// viewer. Layers are bent with their base.
-    pub fn with_relief(self, normal: Vec3) -> Self {
-        match self {
-            Bsdf::Surface(surface) => Bsdf::Surface(surface.with_relief(normal)),
-            Bsdf::Layered(_) | Bsdf::Fibre(_) => self,
+    /// Gives the diffuse lobe an outward normal of its own, world space: that of the BSDF was bent towards the viewer.
+    /// Layers are bent with their base.
+    pub fn set_relief(&mut self, normal: Vec3) {
+        if let Bsdf::Surface(surface) = self {
+            surface.set_relief(normal);
         }
     }
 
-    /// Returns the same BSDF with this boundary, for a path that accepts this polarisation.
-    pub fn with_boundary(self, boundary: Boundary, polarisation: Polarisation) -> Self {
-        match self {
-            Bsdf::Surface(surface) => Bsdf::Surface(surface.with_boundary(boundary, polarisation)),
-            Bsdf::Layered(layered) => Bsdf::Layered(layered.with_boundary(boundary, polarisation)),
-            Bsdf::Fibre(_) => self,
-        }
+    /// Sets the boundary, for a path that accepts this polarisation.
+    pub fn set_boundary(&mut self, boundary: Boundary, polarisation: Polarisation) {
+        let dielectric = match self {
+            Bsdf::Surface(surface) => &mut surface.dielectric,
+            Bsdf::Layered(layered) => layered.dielectric_mut(),
+            Bsdf::Fibre(_) => return,
+        };
+        (dielectric.boundary, dielectric.polarisation) = (boundary, polarisation);
     }
 
     /// Returns the shading normal on the side of the outgoing direction; zero for fibres, frosted glass and translucent
@@ -171,11 +170,10 @@ impl<'a> Bsdf<'a> {
         Bsdf::Fibre(FibreBsdf::new(fibre, tangent, h, wo))
     }
 
-    /// Returns the same BSDF with scattering under the surface in place of the diffuse lobe.
-    pub fn with_subsurface(self) -> Self {
-        match self {
-            Bsdf::Surface(surface) => Bsdf::Surface(surface.with_subsurface()),
-            Bsdf::Layered(_) | Bsdf::Fibre(_) => self,
+    /// Puts scattering under the surface in the place of the diffuse lobe.
+    pub fn set_subsurface(&mut self) {
+        if let Bsdf::Surface(surface) = self {
+            surface.set_subsurface();
         }
     }
 

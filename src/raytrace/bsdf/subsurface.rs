@@ -11,10 +11,9 @@ use super::surface::SurfaceBsdf;
 use glam::Vec3;
 
 impl<'a> SurfaceBsdf<'a> {
-    /// Returns the same BSDF with scattering under the surface in place of the diffuse lobe.
-    pub fn with_subsurface(self) -> Self {
-        let probabilities = LobeProbabilities { base: Lobe::Subsurface, ..self.probabilities };
-        SurfaceBsdf { diffuse: DiffuseLobe { factor: Vec3::ZERO, ..self.diffuse }, probabilities, ..self }
+    /// Puts scattering under the surface in the place of the diffuse lobe.
+    pub fn set_subsurface(&mut self) {
+        (self.probabilities.base, self.diffuse.factor) = (Lobe::Subsurface, Vec3::ZERO);
     }
 
     /// Returns true if some lobe number samples scattering under the surface.

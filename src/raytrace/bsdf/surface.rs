@@ -24,7 +24,7 @@ pub struct SurfaceBsdf<'a> {
 
 impl<'a> SurfaceBsdf<'a> {
     /// Returns the BSDF for the outgoing direction `wo` (unit, world space), outward normals and texture values. A
-    /// clear material is a body in air; see [`SurfaceBsdf::with_boundary`] for others.
+    /// clear material is a body in air; its boundary is set for others.
     #[inline(always)]
     pub fn new(
         material: &'a TracedMaterial,
@@ -54,16 +54,9 @@ impl<'a> SurfaceBsdf<'a> {
         }
     }
 
-    /// Returns the same BSDF with this boundary, for a path that accepts this polarisation.
-    pub fn with_boundary(self, boundary: Boundary, polarisation: Polarisation) -> Self {
-        SurfaceBsdf { dielectric: DielectricLobe { boundary, polarisation, ..self.dielectric }, ..self }
-    }
-
-    /// Returns the same BSDF whose diffuse lobe has this outward normal, world space.
-    pub fn with_relief(self, normal: Vec3) -> Self {
-        let side = self.geometry.side();
-        let normal = Some(self.geometry.to_local(normal * side));
-        SurfaceBsdf { diffuse: DiffuseLobe { normal, ..self.diffuse }, ..self }
+    /// Gives the diffuse lobe an outward normal of its own, world space.
+    pub fn set_relief(&mut self, normal: Vec3) {
+        self.diffuse.normal = Some(self.geometry.to_local(normal * self.geometry.side()));
     }
 
     /// Returns true if the diffuse lobe has a normal of its own.

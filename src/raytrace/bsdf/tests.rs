@@ -86,7 +86,8 @@ fn no_normal_map_reflects_more_light_than_arrives() {
                 let wo = warp::cosine_hemisphere(Vec2::new(set[0], set[1]));
                 let tilted = warp::uniform_sphere(Vec2::new(set[2], 0.8 * set[3]));
                 let normal = crate::math::bend_above(tilted, Vec3::Z, wo);
-                let bsdf = Bsdf::new(&white, Vec3::ONE, normal, Vec3::Z, wo).with_relief(tilted);
+                let mut bsdf = Bsdf::new(&white, Vec3::ONE, normal, Vec3::Z, wo);
+                bsdf.set_relief(tilted);
                 let weights = (0..1024).map(|k| {
                     let set = sobol_burley::sample_4d(k, 0, 17);
                     let sample = bsdf.sample(set[0], Vec2::new(set[2], set[3]));
@@ -112,7 +113,8 @@ fn relief_that_leans_away_from_the_viewer_is_lit_by_its_own_normal() {
     let bent = crate::math::bend_above(relief, Vec3::Z, wo);
     assert!(bent.dot(relief) < 0.9, "it is bent by far");
     for side in [1.0, -1.0] {
-        let bsdf = Bsdf::new(&matte, Vec3::ONE, bent * side, Vec3::Z * side, wo).with_relief(relief * side);
+        let mut bsdf = Bsdf::new(&matte, Vec3::ONE, bent * side, Vec3::Z * side, wo);
+        bsdf.set_relief(relief * side);
         for wi in [Vec3::Z, relief, Vec3::new(-0.95, 0.0, 0.0975_f32.sqrt()), Vec3::new(0.95, 0.1, 0.08).normalize()] {
             // Lambert's law
             let expected = 0.8 / std::f32::consts::PI * wi.dot(relief).max(0.0);
@@ -327,7 +329,8 @@ fn clear_glass_did_not_know_its_base_color_and_tints_what_it_transmits() {
         (Boundary::Interface(DielectricInterface { eta: 1.0 / 1.5, starts_inside: false }), face * 2.25),
         (Boundary::ThinPane, base * texture),
     ] {
-        let bsdf = Bsdf::new(&material, texture, Vec3::Z, Vec3::Z, wo).with_boundary(boundary, Polarisation::NONE);
+        let mut bsdf = Bsdf::new(&material, texture, Vec3::Z, Vec3::Z, wo);
+        bsdf.set_boundary(boundary, Polarisation::NONE);
         let (reflected, transmitted) = (bsdf.sample(0.0, Vec2::ZERO).unwrap(), bsdf.sample(0.999, Vec2::ZERO).unwrap());
         assert!(!reflected.is_transmission && transmitted.is_transmission);
         assert_eq!(reflected.weight, Vec3::ONE, "reflections have no colour");

@@ -7,9 +7,9 @@ use crate::raytrace::geometry::PassedBodies;
 use crate::raytrace::lens::{PixelCamera, camera_ray};
 use crate::raytrace::medium_stack::MediumStack;
 use crate::raytrace::ray_caster::RayCaster;
+use crate::raytrace::ray_filter::RayFilter;
 use crate::raytrace::render_scene::RenderScene;
 use crate::raytrace::sampler::{self, Dimensions, Sampler};
-use crate::raytrace::strand_detail::RayFilter;
 use glam::Vec3;
 use std::collections::BTreeMap;
 

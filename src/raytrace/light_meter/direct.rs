@@ -9,8 +9,8 @@ use crate::raytrace::geometry::PassedBodies;
 use crate::raytrace::lights::TracedLight;
 use crate::raytrace::medium_stack::MediumStack;
 use crate::raytrace::ray_caster::RayCaster;
+use crate::raytrace::ray_filter::RayFilter;
 use crate::raytrace::sampler::{self, Dimensions, Sampler};
-use crate::raytrace::strand_detail::RayFilter;
 use crate::scene::{LightId, Receptor};
 use glam::Vec3;
 

@@ -257,8 +257,11 @@ impl TracedLight {
 
     /// Samples a direction from `point` towards the light. Visibility is not tested.
     pub fn sample(&self, point: Vec3, u: Vec2) -> Option<LightSample> {
-        let sample = self.sample_source(point, u)?;
-        Some(LightSample { value: sample.value * self.beam_transmission(-sample.direction), ..sample })
+        let mut sample = self.sample_source(point, u);
+        if let (Some(sample), true) = (&mut sample, self.has_beam()) {
+            sample.value *= self.beam_transmission(-sample.direction);
+        }
+        sample
     }
 
     /// Returns the light that reaches `point` if the whole emitter is concentrated in its centre. Visibility is not
