@@ -3,7 +3,7 @@
 use super::blas::Blas;
 use super::bvh::TraversalStack;
 use super::simd::{Kernels, SlabRay, TriangleHit};
-use super::strand_detail::{StrandLevel, StrandLevels, StrandView};
+use super::strand_detail::{StrandLevels, StrandView};
 use super::strand_geometry::{StrandBlases, StrandGeometry};
 use crate::math::{self, Ray, gamma};
 use crate::scene::{LightId, Mesh};
@@ -171,11 +171,7 @@ impl Instance {
 
     /// Returns the world bounding box of its strands at any level of detail; none without any.
     pub fn strand_bounds(&self) -> Option<(Vec3, Vec3)> {
-        let strands = &self.geometry.mesh.strands;
-        let (low, high) = strands.bounds()?;
-        let most_radius_m = strands.points().iter().map(|point| point.radius_m).fold(0.0, f32::max);
-        let wider = most_radius_m * (StrandLevel::COARSEST.width() - 1.0);
-        Some(self.world_bounds((low - wider, high + wider)))
+        self.geometry.strands.bounds().map(|bounds| self.world_bounds(bounds))
     }
 
     /// Returns true if a ray that passes these bodies passes the instance.

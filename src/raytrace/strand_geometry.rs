@@ -15,6 +15,8 @@ pub struct StrandGeometry {
     blases: Mutex<[Option<Arc<StrandBlas>>; StrandLevel::COUNT]>,
     /// Mean width of the strands that levels of detail thin; 0 without any.
     width_m: f32,
+    /// Bounding box at any level of detail.
+    bounds: Option<(Vec3, Vec3)>,
     /// A bit for each point that starts a strand.
     starts: Vec<u64>,
     /// Points of each part.
@@ -41,12 +43,23 @@ impl StrandGeometry {
             strands.range(range.start as usize).start as u32..strands.range(range.end as usize - 1).end as u32
         };
         let parts = strands.parts().iter().map(|part| points_of(&part.strands)).collect();
-        StrandGeometry { blases: Mutex::default(), width_m: mean_width_m(strands), starts, parts }
+        StrandGeometry {
+            blases: Mutex::default(),
+            width_m: mean_width_m(strands),
+            bounds: widest_bounds(strands),
+            starts,
+            parts,
+        }
     }
 
     /// Returns the mean width of the strands that levels of detail thin, metres; 0 without any.
     pub fn width_m(&self) -> f32 {
         self.width_m
+    }
+
+    /// Returns the bounding box at any level of detail, in object space; none without strands.
+    pub fn bounds(&self) -> Option<(Vec3, Vec3)> {
+        self.bounds
     }
 
     /// Returns the BLAS of a level of detail.
@@ -129,6 +142,14 @@ impl StrandBlases {
             StrandUse::Lighting => (&self.lighting, self.levels.lighting),
         }
     }
+}
+
+/// Returns the bounding box of strands as wide as they are at the coarsest level of detail; none without strands.
+fn widest_bounds(strands: &Strands) -> Option<(Vec3, Vec3)> {
+    let (low, high) = strands.bounds()?;
+    let most_radius_m = strands.points().iter().map(|point| point.radius_m).fold(0.0, f32::max);
+    let wider = most_radius_m * (StrandLevel::COARSEST.width() - 1.0);
+    Some((low - wider, high + wider))
 }
 
 /// Returns the mean width of the strands of all parts that levels of detail thin; 0 without any.

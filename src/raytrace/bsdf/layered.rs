@@ -52,7 +52,7 @@ struct LayerProbabilities {
 
 impl<'a> LayeredBsdf<'a> {
     /// Returns the BSDF for the outgoing direction `wo` (unit, world space), outward normals and texture values. The
-    /// frame's X axis is arbitrary: see [`LayeredBsdf::with_tangent`].
+    /// frame's X axis is arbitrary: see [`LayeredBsdf::set_tangent`].
     pub fn new(
         (material, layers): (&'a TracedMaterial, &'a SurfaceLayers),
         textures: TextureFactors,
