@@ -153,7 +153,8 @@ pub(super) enum Layers {
     OfPart,
 }
 
-/// Prepares the scene by a function, with the plan that the input asks for.
+/// Prepares the scene for the picture, with the plan that the input asks for, and with a layer for each light or for each
+/// role of lights.
 fn prepared_with(input: &RenderInput<'_>, shares_layers: bool, pool: &ThreadPool) -> Result<RenderScene, PrepareError> {
     let purpose = Purpose { picture: Some((input.settings.width, input.settings.height)), shares_layers };
     let mut prepared = pool.install(|| raytrace::prepare_for(input.scene, input.assets, purpose, input.cache))?;

@@ -13,7 +13,7 @@ use super::geometry_cache::GeometryCache;
 use super::lights::TracedLight;
 use super::limits::PathLimits;
 use super::path_tracer::PathTracer;
-use super::prepare::{Place, PrepareError, prepare_all};
+use super::prepare::{PrepareError, Viewpoint, prepare_all};
 use super::render_scene::RenderScene;
 use super::retrace::Retrace;
 use super::sampler::{self, Dimensions, Sampler};
@@ -68,7 +68,7 @@ impl ProbeScene {
         let origin = layout.low + 0.5 * layout.step_m * (layout.counts.as_vec3() - 1.0);
         // Probes are decimetres apart: the coarse meshes of figures without their hair serve
         let coarse = assets.clone().map_figures(|meshes| meshes.coarse_with_strands(|_| false));
-        let mut render_scene = prepare_all(scene, &coarse, &Place::at(origin), assign_invisible_layers, cache)?;
+        let mut render_scene = prepare_all(scene, &coarse, &Viewpoint::at(origin), assign_invisible_layers, cache)?;
         render_scene.aggregate.show_bodies();
         let is_inside = (0..layout.len())
             .into_par_iter()

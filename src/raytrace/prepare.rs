@@ -61,14 +61,14 @@ pub fn prepare_for(
 ) -> Result<RenderScene, PrepareError> {
     let picture = purpose.picture.filter(|(width, height)| *width > 0 && *height > 0);
     let pixel_m = picture.map(|(width, height)| Lens::new(scene).film_camera(width, height).pixel_m());
-    let place = Place {
+    let viewpoint = Viewpoint {
         origin: scene.camera.position,
         // The camera is the origin
         view: pixel_m.map(|pixel_m| StrandView { position: Vec3::ZERO, pixel_m }),
     };
     let assign_layers = if purpose.shares_layers { film::share_layers } else { film::assign_layers };
-    let mut prepared = prepare_all(scene, assets, &place, assign_layers, cache)?;
-    let in_moment = |moment: &Moment| prepare_at(scene, assets, &place, assign_layers, cache, Some(moment));
+    let mut prepared = prepare_all(scene, assets, &viewpoint, assign_layers, cache)?;
+    let in_moment = |moment: &Moment| prepare_at(scene, assets, &viewpoint, assign_layers, cache, Some(moment));
     prepared.moments = moments::of(scene, assets).par_iter().map(in_moment).collect::<Result<_, _>>()?;
     if !prepared.moments.is_empty() {
         let reason = format!("water moves while it is lit: {} moments of the exposure", prepared.moments.len());
@@ -80,19 +80,19 @@ pub fn prepare_for(
 /// Assigns each light its film layer.
 pub(super) type AssignLayers = fn(&Scene, &mut [(TracedLight, &Light)]) -> Vec<Layer>;
 
-/// Where a prepared scene is looked at from.
+/// From where a prepared scene is looked at.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Place {
+pub(super) struct Viewpoint {
     /// The tracer's origin, a world position near which coordinates are most precise.
     pub origin: Vec3,
     /// The camera for which strands are thinned; all strands without one.
     pub view: Option<StrandView>,
 }
 
-impl Place {
-    /// A place from which all strands are met.
+impl Viewpoint {
+    /// Returns a viewpoint from which rays meet all strands.
     pub fn at(origin: Vec3) -> Self {
-        Place { origin, view: None }
+        Viewpoint { origin, view: None }
     }
 }
 
@@ -100,18 +100,18 @@ impl Place {
 pub(super) fn prepare_all(
     scene: &Scene,
     assets: &Assets,
-    place: &Place,
+    viewpoint: &Viewpoint,
     assign_layers: AssignLayers,
     cache: &GeometryCache,
 ) -> Result<RenderScene, PrepareError> {
-    prepare_at(scene, assets, place, assign_layers, cache, None)
+    prepare_at(scene, assets, viewpoint, assign_layers, cache, None)
 }
 
 /// As [`prepare_all`], in a moment of the exposure.
 fn prepare_at(
     scene: &Scene,
     assets: &Assets,
-    &Place { origin, view }: &Place,
+    &Viewpoint { origin, view }: &Viewpoint,
     assign_layers: AssignLayers,
     cache: &GeometryCache,
     moment: Option<&Moment>,

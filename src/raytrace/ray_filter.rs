@@ -1,4 +1,4 @@
-//! The surfaces that rays of a kind pass or meet.
+//! What rays of a kind meet: which bodies of lights they pass, and which level of detail of strands they meet.
 
 use super::geometry::PassedBodies;
 use super::strand_detail::StrandUse;
@@ -13,12 +13,12 @@ pub struct RayFilter {
 }
 
 impl RayFilter {
-    /// For a ray from the camera, or from it by mirrors and glass.
+    /// Returns the filter of a ray from the camera, directly or by mirrors and glass.
     pub fn seen(passed: PassedBodies) -> Self {
         RayFilter { passed, strands: StrandUse::Seen }
     }
 
-    /// For the ray of a camera path after so many vertices, and so many non-specular ones among them.
+    /// Returns the filter of a camera path's ray after so many vertices, and so many non-specular ones among them.
     #[inline(always)]
     pub fn of_path(depth: u32, non_specular_depth: u32) -> Self {
         let passed = if depth == 0 { PassedBodies::Hidden } else { PassedBodies::None };
@@ -26,7 +26,7 @@ impl RayFilter {
         RayFilter { passed, strands }
     }
 
-    /// For a shadow ray, or one that a surface scattered.
+    /// Returns the filter of a shadow ray, or of one that a surface scattered.
     pub fn lighting(passed: PassedBodies) -> Self {
         RayFilter { passed, strands: StrandUse::Lighting }
     }

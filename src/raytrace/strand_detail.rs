@@ -62,7 +62,7 @@ pub enum StrandUse {
     Lighting,
 }
 
-/// The camera for whose pictures strands are thinned.
+/// A camera, as far as levels of detail depend on it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StrandView {
     /// Position, in the space of the instances.

@@ -36,10 +36,8 @@ pub fn run(arguments: &Arguments, loaded: &Loaded, settings: &Settings, (x, y): 
         return Err(anyhow!("the picture of {width}x{height} pixels has no pixel {x},{y}"));
     }
     let scene = &loaded.scene;
-    let mut prepared = {
-        let purpose = Purpose { picture: Some((width, height)), ..Purpose::default() };
-        raytrace::prepare_for(scene, &loaded.assets, purpose, &GeometryCache::default())?
-    };
+    let purpose = Purpose { picture: Some((width, height)), ..Purpose::default() };
+    let mut prepared = raytrace::prepare_for(scene, &loaded.assets, purpose, &GeometryCache::default())?;
     let plan = arguments.without().iter().fold(prepared.plan().clone(), |plan, shortcut| plan.without(*shortcut));
     prepared.set_plan(plan);
     let chosen = arguments.sample.unwrap_or_else(|| raytrace::brightest_sample(&prepared, settings, (x, y)));

@@ -3,7 +3,6 @@
 use super::grid::{HashGrid, Positioned};
 use crate::math::{Ray, quantile};
 use crate::raytrace::bsdf::Polarisation;
-use crate::raytrace::geometry::PassedBodies;
 use crate::raytrace::lens::{PixelCamera, camera_ray};
 use crate::raytrace::medium_stack::MediumStack;
 use crate::raytrace::ray_caster::RayCaster;
@@ -132,8 +131,7 @@ fn trace_path(
     let mut ray = Ray { origin, direction, t_max: f32::INFINITY };
     let (mut media, mut polarisation, mut travelled) = (MediumStack::default(), Polarisation::NONE, 0.0);
     for depth in 0..scene.plan().max_depth {
-        let passed = if depth == 0 { PassedBodies::Hidden } else { PassedBodies::None };
-        let Some(hit) = caster.intersect_filtered(&ray, RayFilter::seen(passed)) else { return };
+        let Some(hit) = caster.intersect_filtered(&ray, RayFilter::of_path(depth, 0)) else { return };
         let surface = scene.surface(&ray, &hit);
         travelled += hit.t;
         let wo = -ray.direction;

@@ -49,7 +49,7 @@ impl LightMeter {
     pub fn first_surface(&self, origin: Vec3, direction: Vec3, length_m: f32) -> Option<SurfacePoint<'_>> {
         let scene = &self.studio.scene;
         let ray = Ray { origin: origin - scene.origin, direction, t_max: length_m };
-        let hit = RayCaster::new(scene).intersect_filtered(&ray, RayFilter::lighting(PassedBodies::All))?;
+        let hit = RayCaster::new(scene).intersect_filtered(&ray, RayFilter::seen(PassedBodies::All))?;
         let surface = scene.surface(&ray, &hit);
         let (object, part) = scene.object_and_part(&hit);
         let side = if surface.normal.dot(direction) > 0.0 { -1.0 } else { 1.0 };

@@ -5,7 +5,7 @@ use crate::photo::meter::LightReading;
 use crate::raytrace::film::Layer;
 use crate::raytrace::geometry_cache::GeometryCache;
 use crate::raytrace::lights::TracedLight;
-use crate::raytrace::prepare::{Place, PrepareError, prepare_all};
+use crate::raytrace::prepare::{PrepareError, Viewpoint, prepare_all};
 use crate::raytrace::render_scene::RenderScene;
 use crate::scene::{Assets, Light, LightId, Scene};
 use glam::Vec3;
@@ -37,7 +37,7 @@ pub struct MeteredLight {
 impl MeteredStudio {
     /// Prepares a scene; points near `around` (world space) are read most precisely.
     pub fn new(scene: &Scene, assets: &Assets, around: Vec3, cache: &GeometryCache) -> Result<Self, PrepareError> {
-        let mut prepared = prepare_all(scene, assets, &Place::at(around), one_layer_per_light, cache)?;
+        let mut prepared = prepare_all(scene, assets, &Viewpoint::at(around), one_layer_per_light, cache)?;
         // Emissive surfaces are read in lux, like any continuous light.
         prepared.emission_time_s = 1.0;
         prepared.aggregate.show_bodies();

@@ -25,7 +25,7 @@ pub use camera::LiveCamera;
 use super::control::RenderControl;
 use super::film::{Layer, NonFiniteReport, assign_layers};
 use super::geometry_cache::GeometryCache;
-use super::prepare::{self, Place, PrepareError};
+use super::prepare::{self, PrepareError, Viewpoint};
 use super::render_scene::RenderScene;
 use super::retrace::Retrace;
 use crate::photo::Picture;
@@ -147,8 +147,8 @@ impl LivePicture {
     /// Prepares the scene and begins a picture of it.
     fn begin(&mut self, scene: Scene, assets: &Assets, camera: LiveCamera, origin: Vec3) -> Result<(), PrepareError> {
         let camera = camera.around(origin, scene.room.as_ref());
-        let place = Place { origin, view: Some(camera.strand_view()) };
-        let full = prepare::prepare_all(&scene, assets, &place, assign_layers, &self.cache)?;
+        let viewpoint = Viewpoint { origin, view: Some(camera.strand_view()) };
+        let full = prepare::prepare_all(&scene, assets, &viewpoint, assign_layers, &self.cache)?;
         let layers = full.layers.clone();
         let film_layers = (0..layers.len()).map(Some).collect();
         self.view = Some(View { camera, film: LiveFilm::recycling(self.recycled.take(), camera.size, layers) });
@@ -163,9 +163,9 @@ impl LivePicture {
         lights.extend(prepared.retraced.iter().flat_map(|retraced| &retraced.lights));
 
         // Prepare the scene with all lights, and with the retraced ones alone
-        let place = Place { origin: prepared.origin, view: Some(view.camera.strand_view()) };
+        let viewpoint = Viewpoint { origin: prepared.origin, view: Some(view.camera.strand_view()) };
         let prepare_lights =
-            |scene: &Scene| prepare::prepare_all(scene, &prepared.assets, &place, assign_layers, &self.cache);
+            |scene: &Scene| prepare::prepare_all(scene, &prepared.assets, &viewpoint, assign_layers, &self.cache);
         let full = prepare_lights(&scene)?;
         let mut retraced_only = scene.clone();
         retraced_only.lights.retain(|light| lights.contains(&light.id));
