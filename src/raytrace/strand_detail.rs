@@ -10,9 +10,8 @@ use glam::Vec3;
 
 /// Most strands in place of which one is kept, as a power of two.
 const COARSEST: u8 = 3;
-/// Parts of a mesh with fewer strands than this keep all of them: brows, lashes and stubble, of which so few would be left
-/// in a pixel that skin is seen between them.
-pub const MIN_THINNED: usize = 9500;
+/// Parts of a mesh with fewer strands than this keep all of them: brows and lashes.
+pub const MIN_THINNED: usize = 4000;
 /// Width of a kept strand that the camera sees, pixels at most.
 const SEEN_PX: f32 = 0.5;
 /// Width of a kept strand in shadows and for scattered light, pixels at most.
