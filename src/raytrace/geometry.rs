@@ -3,7 +3,7 @@
 use super::blas::Blas;
 use super::bvh::TraversalStack;
 use super::simd::{Kernels, SlabRay, TriangleHit};
-use super::strand_detail::{StrandLevels, StrandView};
+use super::strand_detail::StrandView;
 use super::strand_geometry::{StrandBlases, StrandGeometry};
 use crate::math::{self, Ray, gamma};
 use crate::scene::{LightId, Mesh};
@@ -157,8 +157,9 @@ impl Instance {
     pub fn thin_strands(&mut self, view: Option<&StrandView>) {
         let strands = &self.geometry.mesh.strands;
         let Some(bounds) = self.strand_bounds() else { return };
-        let width_m = self.geometry.strands.width_m() * self.largest_scale();
-        let levels = view.map_or(StrandLevels::default(), |view| view.levels(bounds, width_m));
+        let levels = view.zip(self.geometry.strands.thinned_width_m());
+        let levels = levels.map(|(view, width_m)| view.levels(bounds, width_m * self.largest_scale()));
+        let levels = levels.unwrap_or_default();
         if self.strands.as_ref().is_none_or(|known| known.levels() != levels) {
             self.strands = Some(self.geometry.strands.blases(strands, levels));
         }

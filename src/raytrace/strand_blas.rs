@@ -13,7 +13,7 @@
 
 use super::blas::{Blas, LeafPacket};
 use super::simd::{Kernels, RibbonRay, SegmentHit, SegmentPacket};
-use super::strand_detail::{MIN_THINNED, StrandLevel};
+use super::strand_detail::{StrandLevel, is_thinned};
 use crate::math::Ray;
 use crate::scene::{StrandPoint, Strands};
 use glam::Vec3;
@@ -47,7 +47,7 @@ pub fn strand_blas(strands: &Strands, level: StrandLevel) -> StrandBlas {
     // The first point of each segment, with the factor on its radius
     let mut segments: Vec<(u32, f32)> = Vec::with_capacity(strands.points().len() / level.every());
     for part in strands.parts() {
-        let level = if part.strands.len() < MIN_THINNED { StrandLevel::ALL } else { level };
+        let level = if is_thinned(strands, part) { level } else { StrandLevel::ALL };
         for strand in part.strands.clone().step_by(level.every()) {
             let points = strands.range(strand as usize);
             segments.extend((points.start as u32..points.end as u32 - 1).map(|first| (first, level.width())));

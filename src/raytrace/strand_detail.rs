@@ -6,12 +6,15 @@
 //! beside a pixel. Shadows and scattered light show less of the pattern than what the camera sees: they take a coarser
 //! level.
 
+use crate::scene::{StrandPart, StrandPoint, Strands};
 use glam::Vec3;
+use std::f32::consts::PI;
 
 /// Most strands in place of which one is kept, as a power of two.
 const COARSEST: u8 = 3;
-/// Parts of a mesh with fewer strands than this keep all of them: brows and lashes.
-pub const MIN_THINNED: usize = 4000;
+/// Parts of a mesh through whose bounding box a ray meets fewer strands than this keep all of them: single strands of
+/// brows, lashes and stubble are seen before the skin.
+const MIN_THINNED_DEPTH: f32 = 1.0;
 /// Width of a kept strand that the camera sees, pixels at most.
 const SEEN_PX: f32 = 0.5;
 /// Width of a kept strand in shadows and for scattered light, pixels at most.
@@ -80,6 +83,28 @@ pub struct StrandLevels {
     pub lighting: StrandLevel,
 }
 
+/// Returns true if levels of detail thin the strands of a part.
+pub fn is_thinned(strands: &Strands, part: &StrandPart) -> bool {
+    optical_depth(strands, part) >= MIN_THINNED_DEPTH
+}
+
+/// Returns how many strands of a part a random ray through their bounding box meets on average: by Crofton's formula the
+/// surface of the strands by that of the box.
+fn optical_depth(strands: &Strands, part: &StrandPart) -> f32 {
+    let (mut surface, mut low, mut high) = (0.0, Vec3::INFINITY, Vec3::NEG_INFINITY);
+    for strand in part.strands.clone() {
+        let points = strands.strand(strand as usize);
+        for [a, b] in points.array_windows() {
+            surface += PI * (a.radius_m + b.radius_m) * a.position.distance(b.position);
+        }
+        for StrandPoint { position, radius_m } in points {
+            (low, high) = (low.min(position - radius_m), high.max(position + radius_m));
+        }
+    }
+    let size = high - low;
+    surface / (2.0 * (size.x * size.y + size.y * size.z + size.z * size.x))
+}
+
 impl StrandView {
     /// Returns the levels for strands of a mean width within a bounding box.
     pub fn levels(&self, (low, high): (Vec3, Vec3), width_m: f32) -> StrandLevels {
@@ -95,6 +120,30 @@ impl StrandView {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn sparse_parts_keep_all_strands() {
+        // Parallel strands of 20 cm in a square of 1 cm: a ray through the box meets as many as the sum of diameters says
+        let straight = |count: u32, name: &str| {
+            let mut strands = Strands::default();
+            let side = f64::from(count).sqrt() as u32;
+            for i in 0..count {
+                let [x, z] = [i % side, i / side].map(|k| 0.01 * k as f32 / side.max(2) as f32);
+                strands.push([0.0, 0.2].map(|y| StrandPoint { position: Vec3::new(x, y, z), radius_m: 50e-6 }));
+            }
+            strands.end_part(name);
+            strands
+        };
+        let depth = |strands: &Strands| optical_depth(strands, &strands.parts()[0]);
+        // The surface of the strands by that of the box, 4 sides of 20 cm2 and two of 1 cm2
+        let dense = straight(10_000, "hair");
+        let surface = 10_000.0 * 2.0 * PI * 50e-6 * 0.2;
+        assert!((depth(&dense) / (surface / 82e-4) - 1.0).abs() < 0.02, "{}", depth(&dense));
+        // A cylinder by the box around it
+        let one = straight(1, "lash");
+        assert!((depth(&one) - PI / 4.0).abs() < 1e-3, "{}", depth(&one));
+        assert!(is_thinned(&dense, &dense.parts()[0]) && !is_thinned(&one, &one.parts()[0]));
+    }
 
     #[test]
     fn strands_are_thinned_until_they_are_as_wide_as_the_limits() {

@@ -2,7 +2,7 @@
 
 use super::simd::SegmentHit;
 use super::strand_blas::{StrandBlas, strand_blas};
-use super::strand_detail::{MIN_THINNED, StrandLevel, StrandLevels, StrandUse};
+use super::strand_detail::{StrandLevel, StrandLevels, StrandUse, is_thinned};
 use crate::scene::{StrandPart, Strands};
 use glam::Vec3;
 use std::ops::Range;
@@ -13,8 +13,8 @@ use std::sync::{Arc, Mutex, PoisonError};
 pub struct StrandGeometry {
     /// By level, in object space.
     blases: Mutex<[Option<Arc<StrandBlas>>; StrandLevel::COUNT]>,
-    /// Mean width of the strands that levels of detail thin; 0 without any.
-    width_m: f32,
+    /// Mean width of the strands that levels of detail thin; none without such strands.
+    thinned_width_m: Option<f32>,
     /// Bounding box at any level of detail.
     bounds: Option<(Vec3, Vec3)>,
     /// A bit for each point that starts a strand.
@@ -45,16 +45,16 @@ impl StrandGeometry {
         let parts = strands.parts().iter().map(|part| points_of(&part.strands)).collect();
         StrandGeometry {
             blases: Mutex::default(),
-            width_m: mean_width_m(strands),
+            thinned_width_m: thinned_width_m(strands),
             bounds: widest_bounds(strands),
             starts,
             parts,
         }
     }
 
-    /// Returns the mean width of the strands that levels of detail thin, metres; 0 without any.
-    pub fn width_m(&self) -> f32 {
-        self.width_m
+    /// Returns the mean width of the strands that levels of detail thin, metres; none without such strands.
+    pub fn thinned_width_m(&self) -> Option<f32> {
+        self.thinned_width_m
     }
 
     /// Returns the bounding box at any level of detail, in object space; none without strands.
@@ -152,13 +152,12 @@ fn widest_bounds(strands: &Strands) -> Option<(Vec3, Vec3)> {
     Some((low - wider, high + wider))
 }
 
-/// Returns the mean width of the strands of all parts that levels of detail thin; 0 without any.
-fn mean_width_m(strands: &Strands) -> f32 {
-    let is_thinned = |part: &&StrandPart| part.strands.len() >= MIN_THINNED;
+/// Returns the mean width of the strands that levels of detail thin, the widest part's; none without such strands.
+fn thinned_width_m(strands: &Strands) -> Option<f32> {
     let of_part = |part: &StrandPart| {
         let first = strands.range(part.strands.start as usize).start;
         let points = &strands.points()[first..strands.range(part.strands.end as usize - 1).end];
         2.0 * points.iter().map(|point| point.radius_m).sum::<f32>() / points.len() as f32
     };
-    strands.parts().iter().filter(is_thinned).map(of_part).fold(0.0, f32::max)
+    strands.parts().iter().filter(|part| is_thinned(strands, part)).map(of_part).reduce(f32::max)
 }

@@ -2,6 +2,7 @@
 
 use super::geometry::{Instance, StrandCoordinates, SurfaceInteraction};
 use super::simd::SegmentHit;
+use super::strand_detail::StrandLevel;
 use super::strand_geometry::StrandHit;
 use crate::math::orthonormal_basis;
 use glam::{Vec2, Vec3, Vec3A};
@@ -26,8 +27,11 @@ pub fn surface(instance: &Instance, hit: &StrandHit) -> SurfaceInteraction {
     let h = if matrix.determinant() < 0.0 { -h } else { h };
     let across = facing.cross(along) * h;
 
-    // Bound the error so that rays which leave in any direction clear the fibre
-    let radius = (a.radius_m + s * (b.radius_m - a.radius_m)) * instance.largest_scale() * hit.level.width();
+    // Bound the error so that rays which leave in any direction clear the fibre. A ray leaves a widened strand at its
+    // axis, where it has the strand's ribbon behind it however wide that is: leaving at the edge of it would skip part of
+    // the hair around.
+    let radius = (a.radius_m + s * (b.radius_m - a.radius_m)) * instance.largest_scale();
+    let from_axis = if hit.level == StrandLevel::ALL { across * radius } else { Vec3::ZERO };
     let rounding = instance.world_error(local, local.abs() * crate::math::gamma(8));
     let position_error = Vec3::from(rounding) + SPAWN_RADII * radius;
 
@@ -39,7 +43,7 @@ pub fn surface(instance: &Instance, hit: &StrandHit) -> SurfaceInteraction {
     let part = mesh.parts.len() + strands.part(segment);
     let position: Vec3 = instance.world_from_object().transform_point3a(local).into();
     SurfaceInteraction {
-        position: position + across * radius,
+        position: position + from_axis,
         position_error,
         smooth_offset: Vec3::ZERO,
         geometric_normal: facing,
