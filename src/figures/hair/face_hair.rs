@@ -27,7 +27,6 @@ pub fn grow_beard(body: &HairBody, figure: &Figure, style: &Style, strands: &mut
 
 /// Grows both brows: from the nose outwards, along the arch.
 pub fn grow_brows(body: &HairBody, figure: &Figure, strands: &mut Strands) {
-    let style = Style { radius_m: 45e-6, lift: 0.35, frizz: 0.12, ..BROW };
     let roots = scatter(body, BROW_HAIRS, figure.seed.wrapping_add(2), &brow_density);
     for (index, root) in roots.iter().enumerate() {
         let mut random = Random::new(figure.seed, 400_000 + index as u32);
@@ -36,7 +35,7 @@ pub fn grow_brows(body: &HairBody, figure: &Figure, strands: &mut Strands) {
         let inner = (1.0 - (root.place.x.abs() - 0.012) / 0.02).clamp(0.0, 1.0);
         let comb = Vec3::new(outwards * (1.0 - 0.6 * inner), 0.25 + 0.7 * inner, -0.2);
         let length = 0.009 * (0.7 + 0.4 * random.unit());
-        strands.push(bent(body, root, comb, length, &style, &mut random));
+        strands.push(bent(body, root, comb, length, &BROW, &mut random));
     }
 }
 

@@ -3,7 +3,7 @@
 use super::hair_body::HairBody;
 use super::obstacles::{Obstacles, ShoulderSide};
 use super::roots::{Root, scatter};
-use super::style::{Comb, Style, scalp_density};
+use super::style::{Comb, Style, scalp_density, sideburn_density};
 use crate::figures::random::Random;
 use crate::scene::{Figure, StrandPoint, Strands};
 use glam::{Quat, Vec3};
@@ -34,6 +34,8 @@ const PARTING_DENSITY: f32 = 5.0;
 const CROSSING_M: f32 = 0.006;
 /// Scatter of the level at which hair is cut, metres.
 const CUT_SCATTER_M: f32 = 0.004;
+/// Least length of hair at the sides that hangs over the ears, metres.
+const LEAST_OVER_EARS_M: f32 = 0.05;
 /// Segments of a guide.
 const STEPS: usize = 24;
 /// Longest step in which a guide grows, metres: longer ones would leave the curve of the head.
@@ -42,7 +44,7 @@ const LONGEST_STEP_M: f32 = 0.006;
 /// Grows the strands of a style.
 pub fn grow_head(body: &HairBody, figure: &Figure, style: &Style, strands: &mut Strands) {
     let roots = scatter(body, style.strands, figure.seed, &|place| root_density(style, place));
-    let obstacles = Obstacles::new(body, &roots, matches!(style.comb, Comb::FromParting(_)));
+    let obstacles = Obstacles::new(body, &roots, matches!(style.comb, Comb::FromParting(_)) && !is_short(style));
     let down = body.head.inverse().transform_vector3(Vec3::NEG_Y).normalize_or(Vec3::NEG_Y);
     let field = CombField { style, obstacles: &obstacles, down };
     let every = (roots.len() / GUIDES).max(1);
@@ -62,16 +64,21 @@ pub fn grow_head(body: &HairBody, figure: &Figure, style: &Style, strands: &mut 
     }
 }
 
+/// Returns true for a style that leaves the ears free.
+fn is_short(style: &Style) -> bool {
+    style.length_m[1] < LEAST_OVER_EARS_M
+}
+
 /// Returns the density of roots at a place of the base mesh's head, 1 where it is greatest. Hair that is combed aside
 /// covers the skin beside a parting with the few strands that grow between both: more of them grow there, or a finger's
 /// breadth of skin would show.
 fn root_density(style: &Style, place: Vec3) -> f32 {
-    let crowding = 1.0 + nearness_to_parting(style, place.x) * (PARTING_DENSITY - 1.0);
-    if matches!(style.comb, Comb::FromParting(_)) {
-        scalp_density(place) * crowding / PARTING_DENSITY
-    } else {
-        scalp_density(place)
+    let density = scalp_density(place).max(if is_short(style) { sideburn_density(place) } else { 0.0 });
+    if !matches!(style.comb, Comb::FromParting(_)) {
+        return density;
     }
+    let crowding = 1.0 + nearness_to_parting(style, place.x) * (PARTING_DENSITY - 1.0);
+    density * crowding / PARTING_DENSITY
 }
 
 /// Returns 1 on the parting of a style, falling to 0 within centimetres at both sides; 0 for a style without one.
@@ -190,7 +197,7 @@ impl CombField<'_> {
     /// Returns the length of the hair at a root: between that of the sides and that of the top.
     fn length(&self, root: &Root) -> f32 {
         let [top, side] = self.style.length_m;
-        let height = ((root.place.y - 0.02) / 0.07).clamp(0.0, 1.0);
+        let height = ((root.place.y - 0.035) / 0.06).clamp(0.0, 1.0);
         side + (top - side) * height * height * (3.0 - 2.0 * height)
     }
 

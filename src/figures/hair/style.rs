@@ -53,22 +53,22 @@ pub struct Style {
 const SHORT: Style = Style {
     strands: 30_000,
     radius_m: 65e-6,
-    length_m: [0.05, 0.018],
+    length_m: [0.045, 0.01],
     cut_m: f32::INFINITY,
-    comb: Comb::FromWhorl,
-    lift: 0.55,
-    grip: 0.22,
-    weight: 0.12,
+    comb: Comb::FromParting(0.03),
+    lift: 0.45,
+    grip: 0.35,
+    weight: 0.15,
     gather: 0.0,
-    volume_m: 0.004,
+    volume_m: 0.01,
     curl_m: 0.0,
     turns_per_m: 0.0,
-    clumping: 0.45,
+    clumping: 0.4,
     frizz: 0.16,
 };
 
 /// The hairs of a brow.
-pub const BROW: Style = Style { weight: 0.0, ..SHORT };
+pub const BROW: Style = Style { radius_m: 45e-6, lift: 0.35, weight: 0.0, frizz: 0.12, ..SHORT };
 
 /// Returns the style of a head; none for a bald one.
 pub fn of_head(hair: HairStyle) -> Option<Style> {
@@ -78,7 +78,9 @@ pub fn of_head(hair: HairStyle) -> Option<Style> {
             strands: 36_000,
             radius_m: 50e-6,
             length_m: [0.007, 0.004],
+            comb: Comb::FromWhorl,
             lift: 0.8,
+            grip: 0.22,
             weight: 0.0,
             clumping: 0.0,
             frizz: 0.3,
@@ -123,6 +125,7 @@ pub fn of_head(hair: HairStyle) -> Option<Style> {
             length_m: [0.4, 0.34],
             comb: Comb::ToTie,
             lift: 0.12,
+            grip: 0.22,
             weight: 0.3,
             volume_m: 0.004,
             clumping: 0.5,
@@ -187,12 +190,28 @@ pub fn scalp_density(place: Vec3) -> f32 {
         (125.0, -0.045),
         (180.0, -0.075),
     ];
-    let angle = place.x.abs().atan2(place.z + 0.085).to_degrees();
+    let angle = angle_from_front(place);
     let upper = HAIRLINE.iter().position(|(at, _)| *at >= angle).unwrap_or(HAIRLINE.len() - 1).max(1);
     let ((a0, h0), (a1, h1)) = (HAIRLINE[upper - 1], HAIRLINE[upper]);
     let line = h0 + (h1 - h0) * ((angle - a0) / (a1 - a0)).clamp(0.0, 1.0);
     // Ears stick out of the scalp.
     if is_ear(place) { 0.0 } else { ((place.y - line) / 0.006).clamp(0.0, 1.0) }
+}
+
+/// Returns how much hair grows before the ears, where short hair has sideburns; see [`scalp_density`].
+pub fn sideburn_density(place: Vec3) -> f32 {
+    // Angles between which they grow, and their height over the eyes, metres
+    const ANGLES: [f32; 2] = [62.0, 84.0];
+    const HEIGHTS_M: [f32; 2] = [-0.02, 0.03];
+    let angle = angle_from_front(place);
+    let is_there = !is_ear(place) && angle < ANGLES[1] && place.y < HEIGHTS_M[1];
+    let edge = ((angle - ANGLES[0]) / 4.0).min((place.y - HEIGHTS_M[0]) / 0.006).clamp(0.0, 1.0);
+    if is_there { edge } else { 0.0 }
+}
+
+/// Returns the angle of a place from the front about the middle of the head, degrees.
+fn angle_from_front(place: Vec3) -> f32 {
+    place.x.abs().atan2(place.z + 0.085).to_degrees()
 }
 
 /// Returns how much beard grows at a place of the face; see [`scalp_density`].
