@@ -1,7 +1,7 @@
 //! Progress of a running render, readable from another thread.
 
 use super::threads::locked;
-use crate::raytrace::{RenderControl, Settings};
+use crate::raytrace::{NoiseTarget, RenderControl, Settings};
 use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
@@ -26,7 +26,7 @@ pub struct RenderMonitor {
     control: Arc<RenderControl>,
     pixels: u64,
     spp: u32,
-    /// The render ends by its noise: the number of samples is not known in advance.
+    /// The render may end by its noise: the number of samples is not known in advance.
     ends_by_noise: bool,
     started: Instant,
     stages: Mutex<StageTimes>,
@@ -54,7 +54,7 @@ impl RenderMonitor {
             control,
             pixels: u64::from(settings.width) * u64::from(settings.height),
             spp: settings.spp,
-            ends_by_noise: settings.noise_stops.is_some(),
+            ends_by_noise: NoiseTarget::may_end(settings),
             started: Instant::now(),
             stages: Mutex::default(),
         }
@@ -133,5 +133,25 @@ impl RenderMonitor {
 
     pub(super) fn finish(&self) {
         locked(&self.stages).ended.get_or_insert_with(Instant::now);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_draft_counts_its_samples_and_a_longer_render_waits_for_the_prediction_of_its_rays() {
+        let monitor = |spp| {
+            let settings = Settings { width: 10, height: 10, spp, noise_stops: Some(0.3), ..Settings::default() };
+            let monitor = RenderMonitor::new(&settings, Arc::default());
+            monitor.start_tracing(Instant::now());
+            monitor.control().count(1000, 100);
+            monitor
+        };
+        let (draft, longer) = (monitor(2), monitor(14));
+        assert_eq!((draft.progress().fraction, longer.progress().fraction), (0.5, 0.0));
+        longer.predict_rays_left(3000);
+        assert_eq!(longer.progress().fraction, 0.25);
     }
 }

@@ -28,6 +28,11 @@ impl NoiseTarget {
         settings.noise_stops.map(NoiseTarget::new)
     }
 
+    /// Returns true if a render may end before it has all its samples.
+    pub fn may_end(settings: &Settings) -> bool {
+        NoiseTarget::of(settings).is_some_and(|target| target.least_spp() < settings.spp)
+    }
+
     /// Returns the noise below which a tile takes no more samples, stops.
     pub fn limit_stops(&self) -> f32 {
         self.limit_stops

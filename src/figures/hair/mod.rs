@@ -109,6 +109,24 @@ mod tests {
     }
 
     #[test]
+    fn short_hair_has_sideburns_and_leaves_the_face_free() {
+        for (hair, has_sideburns) in [(HairStyle::Short, true), (HairStyle::Crop, true), (HairStyle::TiedBack, false)] {
+            let figure = Figure { hair, ..READY[1].figure() };
+            let strands = build(&figure).fine.strands.with_parts(|part| part == "hair");
+            let to_head = head_frame(&figure).inverse();
+            let points = |index: usize| strands.strand(index).iter().map(|p| to_head.transform_point3(p.position));
+            let is_before_ears = |p: Vec3| p.z > -0.06;
+            let is_sideburn = |p: Vec3| is_before_ears(p) && (-0.025..0.0).contains(&p.y);
+            let sideburns = (0..strands.len()).filter(|&index| points(index).next().is_some_and(is_sideburn)).count();
+            assert_eq!(sideburns > 20, has_sideburns, "{hair:?}: {sideburns} hairs");
+            // Brows and jaw
+            let is_on_face = |p: Vec3| is_before_ears(p) && (p.y < -0.04 || (p.x.abs() < 0.04 && p.y < 0.045));
+            let on_face = (0..strands.len()).filter(|&index| points(index).any(is_on_face)).count();
+            assert_eq!(on_face, 0, "{hair:?}");
+        }
+    }
+
+    #[test]
     fn strands_that_cross_a_parting_do_not_gather_on_its_line() {
         // Those that crossed it were all moved to the plane of the parting.
         let figure = Figure { hair: HairStyle::Long, ..READY[0].figure() };
