@@ -85,13 +85,15 @@ impl RenderMonitor {
         let end = stages.ended.unwrap_or_else(Instant::now);
         let tracing_s = stages.tracing.map_or(0.0, |since| (end - since).as_secs_f64());
         let fraction = done as f64 / total as f64;
-        let is_enough = tracing_s > 0.3 && fraction > 0.002;
+        // The time of the coarse picture says nothing about that of the samples
+        let counted_s = stages.coarse.or(stages.tracing).map_or(0.0, |since| (end - since).as_secs_f64());
+        let is_enough = counted_s > 0.3 && fraction > 0.002;
         Progress {
             fraction: fraction as f32,
             samples: samples as f32 / self.pixels.max(1) as f32,
             mrays_s: if tracing_s > 0.0 { (self.control.rays() as f64 * 1e-6 / tracing_s) as f32 } else { 0.0 },
             elapsed: end - self.started,
-            left: is_enough.then(|| Duration::from_secs_f64(tracing_s * (1.0 - fraction) / fraction)),
+            left: is_enough.then(|| Duration::from_secs_f64(counted_s * (1.0 - fraction) / fraction)),
         }
     }
 
@@ -153,5 +155,18 @@ mod tests {
         assert_eq!((draft.progress().fraction, longer.progress().fraction), (0.5, 0.0));
         longer.predict_rays_left(3000);
         assert_eq!(longer.progress().fraction, 0.25);
+    }
+    #[test]
+    fn the_time_left_is_that_of_the_samples_without_the_coarse_picture() {
+        let settings = Settings { width: 10, height: 10, spp: 2, ..Settings::default() };
+        let monitor = RenderMonitor::new(&settings, Arc::default());
+        monitor.start_tracing(Instant::now() - Duration::from_secs(10));
+        monitor.control().count(50, 100);
+        let left_s = monitor.progress().left.unwrap().as_secs_f32();
+        assert!((10.0..11.0).contains(&left_s), "{left_s}");
+        monitor.finish_coarse();
+        monitor.control().count(1000, 100);
+        let progress = monitor.progress();
+        assert_eq!((progress.fraction, progress.left), (0.5, None), "no time yet to judge by");
     }
 }
