@@ -12,8 +12,8 @@ use std::f32::consts::PI;
 
 /// Most strands in place of which one is kept, as a power of two.
 const COARSEST: u8 = 3;
-/// Parts of a mesh through whose bounding box a ray meets fewer strands than this keep all of them: single strands of
-/// brows, lashes and stubble are seen before the skin.
+/// Parts of a mesh through whose bounding box a ray meets fewer strands than this on average keep all of them: single
+/// strands of brows, lashes and stubble are seen before the skin.
 const MIN_THINNED_DEPTH: f32 = 1.0;
 /// Width of a kept strand that the camera sees, pixels at most.
 const SEEN_PX: f32 = 0.5;
@@ -123,24 +123,24 @@ mod tests {
 
     #[test]
     fn sparse_parts_keep_all_strands() {
-        // Parallel strands of 20 cm in a square of 1 cm: a ray through the box meets as many as the sum of diameters says
-        let straight = |count: u32, name: &str| {
+        // Parallel strands of 20 cm in a square of 1 cm
+        let straight = |count: u32| {
             let mut strands = Strands::default();
             let side = f64::from(count).sqrt() as u32;
             for i in 0..count {
                 let [x, z] = [i % side, i / side].map(|k| 0.01 * k as f32 / side.max(2) as f32);
                 strands.push([0.0, 0.2].map(|y| StrandPoint { position: Vec3::new(x, y, z), radius_m: 50e-6 }));
             }
-            strands.end_part(name);
+            strands.end_part("hair");
             strands
         };
         let depth = |strands: &Strands| optical_depth(strands, &strands.parts()[0]);
         // The surface of the strands by that of the box, 4 sides of 20 cm2 and two of 1 cm2
-        let dense = straight(10_000, "hair");
+        let dense = straight(10_000);
         let surface = 10_000.0 * 2.0 * PI * 50e-6 * 0.2;
         assert!((depth(&dense) / (surface / 82e-4) - 1.0).abs() < 0.02, "{}", depth(&dense));
         // A cylinder by the box around it
-        let one = straight(1, "lash");
+        let one = straight(1);
         assert!((depth(&one) - PI / 4.0).abs() < 1e-3, "{}", depth(&one));
         assert!(is_thinned(&dense, &dense.parts()[0]) && !is_thinned(&one, &one.parts()[0]));
     }

@@ -27,9 +27,9 @@ pub fn surface(instance: &Instance, hit: &StrandHit) -> SurfaceInteraction {
     let h = if matrix.determinant() < 0.0 { -h } else { h };
     let across = facing.cross(along) * h;
 
-    // Bound the error so that rays which leave in any direction clear the fibre. A ray leaves a widened strand at its
-    // axis, where it has the strand's ribbon behind it however wide that is: leaving at the edge of it would skip part of
-    // the hair around.
+    // Bound the error so that rays which leave in any direction clear the fibre. Where strands are widened, rays leave
+    // from the axis: they have the strand's ribbon behind them however wide it is. From its edge they would skip a part
+    // of the hair around.
     let radius = (a.radius_m + s * (b.radius_m - a.radius_m)) * instance.largest_scale();
     let from_axis = if hit.level == StrandLevel::ALL { across * radius } else { Vec3::ZERO };
     let rounding = instance.world_error(local, local.abs() * crate::math::gamma(8));

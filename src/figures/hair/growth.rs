@@ -64,7 +64,7 @@ pub fn grow_head(body: &HairBody, figure: &Figure, style: &Style, strands: &mut 
     }
 }
 
-/// Returns true for a style that leaves the ears free.
+/// Returns true for a style whose hair is too short at the sides to hang over the ears.
 fn is_short(style: &Style) -> bool {
     style.length_m[1] < LEAST_OVER_EARS_M
 }
@@ -197,6 +197,7 @@ impl CombField<'_> {
     /// Returns the length of the hair at a root: between that of the sides and that of the top.
     fn length(&self, root: &Root) -> f32 {
         let [top, side] = self.style.length_m;
+        // From the temples, 3.5 cm over the eyes, to the front of the crown
         let height = ((root.place.y - 0.035) / 0.06).clamp(0.0, 1.0);
         side + (top - side) * height * height * (3.0 - 2.0 * height)
     }

@@ -200,7 +200,7 @@ pub fn scalp_density(place: Vec3) -> f32 {
 
 /// Returns how much hair grows before the ears, where short hair has sideburns; see [`scalp_density`].
 pub fn sideburn_density(place: Vec3) -> f32 {
-    // Angles between which they grow, and their height over the eyes, metres
+    // Angles from the front and heights over the eyes between which they grow
     const ANGLES: [f32; 2] = [62.0, 84.0];
     const HEIGHTS_M: [f32; 2] = [-0.02, 0.03];
     let angle = angle_from_front(place);
