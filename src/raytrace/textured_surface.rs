@@ -12,10 +12,6 @@ use glam::{Affine2, Vec3};
 impl RenderScene {
     /// Returns the surface interaction at a hit of a ray, with the normal of its normal map.
     pub(super) fn surface(&self, ray: &Ray, hit: &Hit) -> SurfaceInteraction {
-        if !self.plan.normal_maps && !self.plan.tangents {
-            // Returned as it is: a copy costs time
-            return self.aggregate.surface(hit);
-        }
         let mut surface = self.aggregate.surface(hit);
         if self.plan.normal_maps {
             self.apply_normal_map(&mut surface, ray.direction, hit);
