@@ -1,9 +1,9 @@
 //! The joints that a figure is posed by: where they are, and the pose in which one of them is where it is dragged.
 
 use super::body_data::BodyData;
-use super::build::PosedBody;
 use super::gaze::without_gaze;
 use super::morph::rest_positions;
+use super::posed_body::PosedBody;
 use super::skeleton::{Side, Skeleton};
 use crate::scene::{Extent, Figure, Parameter, ParameterSet, Pose};
 use glam::{Mat2, Vec2, Vec3};

@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! BodyData (base mesh, targets, bones) + Figure -> morph: rest positions -> skeleton and skinning: posed positions
-//!   -> cages of skin, garments, teeth -> Catmull-Clark subdivision -> Mesh with parts, and eyes
+//!   -> cages of skin and teeth, garments hung as cloth -> Catmull-Clark subdivision -> Mesh with parts, and eyes
 //! ```
 //!
 //! The body data are MakeHuman's (CC0), converted by `catchlight bake-figures`. A mesh is a function of the parameters:
@@ -11,8 +11,10 @@
 mod body_codec;
 mod body_data;
 mod build;
+mod cloth;
 mod eyes;
 mod face;
+mod garments;
 mod gaze;
 mod hair;
 mod joints;
@@ -21,6 +23,7 @@ mod materials;
 mod morph;
 mod named_poses;
 mod patch;
+mod posed_body;
 mod random;
 mod ready;
 mod regions;
@@ -47,8 +50,8 @@ pub use skin_textures::{builtin_texture, skin_textures};
 
 use crate::scene::{Figure, FigureMeshes};
 pub use build::PARTS;
-use build::PosedBody;
 use glam::{Affine3A, Vec3};
+use posed_body::PosedBody;
 use std::sync::{Mutex, PoisonError};
 
 /// Builds the meshes of a figure in object space, metres.

@@ -1,6 +1,7 @@
 //! A patch of the posed body: some quads of a group, cut at the edge of a garment.
 
 use super::body_data::BodyData;
+use super::subdivide::QuadMesh;
 use glam::{Vec2, Vec3};
 use std::collections::HashMap;
 
@@ -95,6 +96,17 @@ impl Patch {
         let normals = self.normals();
         for ((position, normal), &source) in self.positions.iter_mut().zip(normals).zip(&self.sources) {
             *position += normal * offset(source);
+        }
+    }
+
+    /// Returns the mesh of one part, with a value for each vertex of the body data.
+    pub fn into_mesh(self, part: u8, value: &dyn Fn(u16) -> Vec3) -> QuadMesh {
+        QuadMesh {
+            positions: self.positions,
+            parts: vec![part; self.quads.len()],
+            quads: self.quads,
+            uvs: self.uvs,
+            values: self.sources.iter().map(|&v| value(v)).collect(),
         }
     }
 

@@ -1,8 +1,9 @@
 //! Where a vertex of the base mesh lies on the body: which garments cover it.
 
 use super::body_data::{BodyData, BoneWeights};
-use crate::scene::{Bottom, Top};
+use crate::scene::{Bottom, Figure, Top};
 use glam::Vec3;
+use std::sync::LazyLock;
 
 /// The place of a vertex on the body.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -60,8 +61,36 @@ fn along(p: Vec3, a: Vec3, b: Vec3) -> f32 {
     (p - a).dot(b - a) / (b - a).length_squared().max(1e-9)
 }
 
+/// Returns the distance from the end of a sleeve, metres, for a place on an arm.
+fn to_sleeve_end(at: f32, top: Top) -> f32 {
+    let end = match top {
+        Top::LongSleeves => 1.93,
+        Top::ShortSleeves => 0.56,
+        Top::Straps => 0.02,
+    };
+    (end - at) * 0.27
+}
+
+/// The end of trousers is held by the shoe as cloth at this distance from where it is held, metres.
+const ON_SHOE_M: f32 = 0.01;
 /// Distance from the neckline at which a garment hangs freely, metres.
 const COLLAR_END_M: f32 = 0.06;
+
+/// What a figure wears, besides shoes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Clothes {
+    /// Upper garment.
+    pub top: Top,
+    /// Lower garment.
+    pub bottom: Bottom,
+}
+
+impl Clothes {
+    /// Returns the clothes of a figure.
+    pub fn new(figure: &Figure) -> Clothes {
+        Clothes { top: figure.top, bottom: figure.bottom }
+    }
+}
 
 /// The edges of garments, in the rest pose of the base mesh. A field is positive inside of a garment, about the distance
 /// to its edge in metres.
@@ -73,11 +102,19 @@ pub struct Edges {
     neck: Vec3,
     knee_height: f32,
     hip_height: f32,
+    /// Height of a skirt's upper edge.
+    waist_height: f32,
 }
 
 impl Edges {
+    /// Returns the edges on the shipped body.
+    pub fn shipped() -> &'static Edges {
+        static SHIPPED: LazyLock<Edges> = LazyLock::new(|| Edges::new(BodyData::shipped()));
+        &SHIPPED
+    }
+
     /// Returns the edges on a body.
-    pub fn new(data: &BodyData) -> Edges {
+    fn new(data: &BodyData) -> Edges {
         let head = |name: &str| data.bone(name).map_or(Vec3::ZERO, |b| data.positions[usize::from(data.bones[b].head)]);
         Edges {
             places: places(data),
@@ -85,6 +122,12 @@ impl Edges {
             neck: head("neck01"),
             knee_height: head("lowerleg01.L").y,
             hip_height: head("pelvis.L").y,
+            waist_height: data
+                .quads("helper-skirt")
+                .iter()
+                .flatten()
+                .map(|&v| data.positions[usize::from(v)].y)
+                .fold(f32::NEG_INFINITY, f32::max),
         }
     }
 
@@ -94,25 +137,25 @@ impl Edges {
     }
 
     /// Returns the field of an upper garment.
-    pub fn top(&self, vertex: u16, top: Top) -> f32 {
-        let sleeve = match top {
-            Top::LongSleeves => 1.93,
-            Top::ShortSleeves => 0.56,
-            Top::Straps => 0.02,
-        };
+    pub fn top(&self, vertex: u16, clothes: Clothes) -> f32 {
         match self.place(vertex) {
-            Place::Arm(at) => (sleeve - at) * 0.27,
-            Place::Leg(_) => self.to_hem(vertex),
+            Place::Arm(at) => to_sleeve_end(at, clothes.top),
+            Place::Leg(_) => self.to_hem(vertex, clothes.bottom),
             // Neck and head lie over every garment.
-            Place::Trunk { height } => {
-                self.to_neckline(vertex, top).min((1.04 - height) * 0.5).min(self.to_hem(vertex))
-            }
+            Place::Trunk { height } => self
+                .to_neckline(vertex, clothes.top)
+                .min((1.04 - height) * 0.5)
+                .min(self.to_hem(vertex, clothes.bottom)),
         }
     }
 
-    /// Returns the height over the lower edge of an upper garment.
-    fn to_hem(&self, vertex: u16) -> f32 {
-        self.positions[usize::from(vertex)].y - self.hip_height + 0.05
+    /// Returns the height over the lower edge of an upper garment, which hangs over trousers and is tucked into a skirt.
+    fn to_hem(&self, vertex: u16, bottom: Bottom) -> f32 {
+        let hem_height = match bottom {
+            Bottom::Trousers | Bottom::Shorts => self.hip_height - 0.05,
+            Bottom::Skirt => self.waist_height - 0.08,
+        };
+        self.positions[usize::from(vertex)].y - hem_height
     }
 
     /// Returns the distance from the opening for the neck: a ball round its base, lower in front for straps.
@@ -127,7 +170,7 @@ impl Edges {
     /// Returns the field of a lower garment.
     pub fn bottom(&self, vertex: u16, bottom: Bottom) -> f32 {
         let end = match bottom {
-            Bottom::Trousers => 1.99,
+            Bottom::Trousers => 1.95,
             Bottom::Shorts => 0.75,
             Bottom::Skirt => return self.positions[usize::from(vertex)].y - self.knee_height - 0.03,
         };
@@ -155,27 +198,55 @@ impl Edges {
         }
     }
 
-    /// Returns 1 where the collar of an upper garment lies on the neck, falling to 0 within 6 cm of its edge.
-    pub fn nearness_to_neckline(&self, vertex: u16, top: Top) -> f32 {
-        1.0 - (self.to_neckline(vertex, top) / COLLAR_END_M).clamp(0.0, 1.0)
+    /// Returns the distance from the nearest edge of an upper garment that lies close: collar and straps.
+    fn to_close_edge(&self, vertex: u16, top: Top) -> f32 {
+        match self.place(vertex) {
+            Place::Arm(at) if top == Top::Straps => to_sleeve_end(at, top).min(self.to_neckline(vertex, top)),
+            _ => self.to_neckline(vertex, top),
+        }
     }
 
-    /// Returns true for skin on which a collar may lie.
-    pub fn is_near_neckline(&self, vertex: u16, top: Top) -> bool {
-        self.to_neckline(vertex, top).abs() < 2.0 * COLLAR_END_M
+    /// Returns 1 where an edge of an upper garment lies close, falling to 0 within 6 cm of it.
+    pub fn nearness_to_close_edge(&self, vertex: u16, top: Top) -> f32 {
+        1.0 - (self.to_close_edge(vertex, top) / COLLAR_END_M).clamp(0.0, 1.0)
+    }
+
+    /// Returns true for skin on which such an edge may lie.
+    pub fn is_near_close_edge(&self, vertex: u16, top: Top) -> bool {
+        self.to_close_edge(vertex, top).abs() < 2.0 * COLLAR_END_M
+    }
+
+    /// Returns the distance of a vertex of a garment from where it is held, metres: at collar, straps and cuffs, by the
+    /// waistband below the upper garment. Trousers rest on shoes. Shoes are held everywhere.
+    pub fn to_hold(&self, vertex: u16, garment: Garment, Clothes { top, bottom }: Clothes) -> f32 {
+        match (garment, self.place(vertex)) {
+            (Garment::Shoe, _) => 0.0,
+            (Garment::Top, Place::Arm(at)) if top != Top::ShortSleeves => to_sleeve_end(at, top),
+            (Garment::Top, _) if bottom == Bottom::Skirt => {
+                self.to_neckline(vertex, top).min(self.to_hem(vertex, bottom))
+            }
+            (Garment::Top, _) => self.to_neckline(vertex, top),
+            (Garment::Bottom, Place::Leg(_)) if bottom == Bottom::Trousers => {
+                (self.bottom(vertex, bottom).max(0.0) + ON_SHOE_M).min(-self.to_hem(vertex, bottom))
+            }
+            (Garment::Bottom, _) => -self.to_hem(vertex, bottom),
+        }
     }
 
     /// Returns how far a garment stands off from the body, metres.
-    pub fn looseness(&self, vertex: u16, garment: Garment, top: Top) -> f32 {
-        let from_neck = 1.0 - self.nearness_to_neckline(vertex, top);
+    pub fn looseness(&self, vertex: u16, garment: Garment, Clothes { top, bottom }: Clothes) -> f32 {
+        let from_edge = 1.0 - self.nearness_to_close_edge(vertex, top);
+        // A top that is tucked in is tight there
+        let tuck = if bottom == Bottom::Skirt { (self.to_hem(vertex, bottom) / 0.06).clamp(0.2, 1.0) } else { 1.0 };
         match (garment, self.place(vertex)) {
             (Garment::Shoe, _) => 0.003,
             (Garment::Top, Place::Arm(at)) => 0.006 + 0.006 * at.min(1.0),
             // Over the trousers
             (Garment::Top, Place::Trunk { height }) => {
-                0.001 + 0.006 * from_neck + 0.012 * (0.6 - height).clamp(0.0, 0.6)
+                (0.001 + 0.006 * from_edge + 0.012 * (0.6 - height).clamp(0.0, 0.6)) * tuck
             }
             (Garment::Top, Place::Leg(_)) => 0.014,
+            (Garment::Bottom, _) if bottom == Bottom::Skirt => 0.006,
             (Garment::Bottom, Place::Leg(at)) => 0.005 + 0.009 * at.clamp(0.0, 2.0),
             (Garment::Bottom, _) => 0.005,
         }

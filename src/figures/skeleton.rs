@@ -5,7 +5,7 @@
 use super::body_data::BodyData;
 use super::two_bone_ik::{Chain, aligned, solve};
 use crate::scene::{Arm, Figure, Leg, Torso};
-use glam::{Affine3A, EulerRot, Quat, Vec3};
+use glam::{Affine3A, EulerRot, Quat, Vec2, Vec3};
 
 /// Bones of the spine, from the pelvis up.
 const SPINE: [&str; 5] = ["spine05", "spine04", "spine03", "spine02", "spine01"];
@@ -16,6 +16,9 @@ const NECK_SHARE: f32 = 0.45;
 const REACH: f32 = 0.995;
 /// Height of the pelvis over the seat, as a part of the distance from the pelvis to the knee.
 const SEAT_DEPTH: f32 = 0.2;
+/// Angle of the arms in the rest pose, degrees, and the part of an arm's angle by which its shoulder rises.
+const HALF_RAISED_DEG: f32 = 40.0;
+const SHOULDER_SHARE: f32 = 0.25;
 /// Bend of a finger joint of a fist, degrees.
 const FIST_DEG: f32 = 78.0;
 
@@ -167,9 +170,9 @@ impl Turns<'_> {
     fn arm(&mut self, rest: &RestBones, side: Side, arm: &Arm) {
         let sign = side.sign();
         let bone = |stem: &str| side.bone(stem);
-        // The shoulder rises with an arm that is raised above 40 degrees.
-        let raised = arm.out_deg.max(arm.forward_deg).max(0.0);
-        let lift = arm.shoulder_deg + 0.22 * (raised - 40.0).max(0.0);
+        // The shoulder rises with the arm: the rest pose is that of arms half raised
+        let raised = Vec2::new(arm.out_deg, arm.forward_deg).max(Vec2::ZERO).length();
+        let lift = arm.shoulder_deg + SHOULDER_SHARE * (raised - HALF_RAISED_DEG);
         let shoulder = Quat::from_rotation_z(sign * lift.to_radians());
         self.set(&bone("clavicle"), shoulder);
         // Upper arm: from the rest direction to hanging, twisted, then out and forwards
@@ -180,7 +183,11 @@ impl Turns<'_> {
         let out = Quat::from_rotation_z(sign * arm.out_deg.to_radians());
         let forward = Quat::from_rotation_x(-arm.forward_deg.to_radians());
         let twist = Quat::from_rotation_y(sign * arm.twist_deg.to_radians());
-        self.set(&bone("upperarm01"), shoulder.inverse() * forward * out * twist * hang);
+        // Half of it turns the top of the shoulder, which bulges otherwise
+        let upper_arm = shoulder.inverse() * forward * out * twist * hang;
+        let half = part(upper_arm, 0.5);
+        self.set(&bone("shoulder01"), half);
+        self.set(&bone("upperarm01"), half.inverse() * upper_arm);
         // Elbow: a hinge that bends the forearm forwards; the rest pose is bent already
         let forearm = (wrist - elbow).normalize_or_zero();
         let hinge = along.cross(forearm).normalize_or(Vec3::NEG_X);

@@ -14,19 +14,27 @@ pub struct QuadMesh {
     pub uvs: Vec<[Vec2; 4]>,
     /// Part of each quad, an index into the caller's list.
     pub parts: Vec<u8>,
-    /// Place of each vertex on the base mesh, which is not smoothed; empty if it is of no interest.
-    pub places: Vec<Vec3>,
+    /// A value of each vertex, which is split and not smoothed; empty if there is none.
+    pub values: Vec<Vec3>,
 }
 
 /// An edge with the quads beside it.
 #[derive(Clone, Copy, Debug)]
-struct Edge {
-    ends: [u32; 2],
+pub struct Edge {
+    /// Vertices.
+    pub ends: [u32; 2],
     quads: [u32; 2],
 }
 
 /// No quad: the edge is a border.
 const NONE: u32 = u32::MAX;
+
+impl Edge {
+    /// Returns true for an edge of one quad.
+    pub fn is_border(&self) -> bool {
+        self.quads[1] == NONE
+    }
+}
 
 impl QuadMesh {
     /// Appends another mesh.
@@ -36,7 +44,7 @@ impl QuadMesh {
         self.quads.extend(other.quads.iter().map(|quad| quad.map(|v| v + first)));
         self.uvs.extend(&other.uvs);
         self.parts.extend(&other.parts);
-        self.places.extend(&other.places);
+        self.values.extend(&other.values);
     }
 
     /// Returns the mesh with every quad split into four, smoothed.
@@ -50,7 +58,7 @@ impl QuadMesh {
         let mut positions = self.vertex_points(&edges, &quad_points);
         positions.extend(edge_points);
         positions.extend(quad_points);
-        let places = self.split_places(&edges);
+        let values = self.split_values(&edges);
         // Four quads for each, one at each corner
         let split = |(index, quad): (usize, &[u32; 4])| {
             let side = |k: usize| vertex_count + edges.of_quad[index][k];
@@ -69,19 +77,19 @@ impl QuadMesh {
             quads,
             uvs: self.uvs.par_iter().flat_map_iter(split_uv).collect(),
             parts: self.parts.iter().flat_map(|&part| [part; 4]).collect(),
-            places,
+            values,
         }
     }
 
-    /// Returns the places of the old vertices, and of the middles of edges and quads.
-    fn split_places(&self, edges: &Edges) -> Vec<Vec3> {
-        if self.places.is_empty() {
+    /// Returns the values of the old vertices, and of the middles of edges and quads.
+    fn split_values(&self, edges: &Edges) -> Vec<Vec3> {
+        if self.values.is_empty() {
             return Vec::new();
         }
         let mean =
-            |vertices: &[u32]| vertices.iter().map(|&v| self.places[v as usize]).sum::<Vec3>() / vertices.len() as f32;
+            |vertices: &[u32]| vertices.iter().map(|&v| self.values[v as usize]).sum::<Vec3>() / vertices.len() as f32;
         let of_edges = edges.edges.iter().map(|edge| mean(&edge.ends));
-        self.places.iter().copied().chain(of_edges).chain(self.quads.iter().map(|quad| mean(quad))).collect()
+        self.values.iter().copied().chain(of_edges).chain(self.quads.iter().map(|quad| mean(quad))).collect()
     }
 
     fn edge_point(&self, edge: &Edge, quad_points: &[Vec3]) -> Vec3 {
@@ -113,7 +121,7 @@ impl QuadMesh {
                 let ring = &mut rings[vertex as usize];
                 ring.edges += (self.positions[vertex as usize] + other) / 2.0;
                 ring.edge_count += 1.0;
-                if edge.quads[1] == NONE {
+                if edge.is_border() {
                     ring.border += other;
                     ring.border_count += 1.0;
                 }
@@ -185,14 +193,17 @@ impl Ring {
 }
 
 /// The edges of a mesh.
-struct Edges {
-    edges: Vec<Edge>,
+#[derive(Clone, Debug)]
+pub struct Edges {
+    /// All edges, in the order of their vertices.
+    pub edges: Vec<Edge>,
     /// Edges of each quad; edge `k` goes from corner `k` to the next.
     of_quad: Vec<[u32; 4]>,
 }
 
 impl Edges {
-    fn new(mesh: &QuadMesh) -> Edges {
+    /// Returns the edges of a mesh.
+    pub fn new(mesh: &QuadMesh) -> Edges {
         // Sort the quads' sides by their ends: those of one edge become neighbours
         let sides = |(quad, corners): (usize, &[u32; 4])| {
             let corners = *corners;

@@ -1,0 +1,262 @@
+//! Cloth that hangs from a body, by position based dynamics (Müller et al. 2007, "Position Based Dynamics").
+//!
+//! A garment starts as it fits the posed body. Its lengths are those on the body at rest, whose arms are spread, with some
+//! ease: it folds where the pose makes it shorter and sags where it is loose. The body is the fitted garment itself, which
+//! lies some millimetres over the skin: a vertex stays outside the plane of the nearest fitted vertex. Cloth does not meet
+//! itself. A few steps are enough: cloth that a body wears moves by centimetres.
+
+use super::random::Random;
+use super::subdivide::{Edges, QuadMesh};
+use glam::{Vec3, Vec3A};
+
+/// Steps of time, and passes over all lengths in each.
+const STEPS: usize = 20;
+const PASSES: usize = 8;
+/// Way that cloth falls in the first step, metres.
+const FALL_M: f32 = 0.001;
+/// Part of its velocity that cloth keeps from step to step.
+const INERTIA: f32 = 0.9;
+/// Lengths of cloth, as factors of those of the fitted garment at rest.
+const EASE: f32 = 1.04;
+/// Part of an error in length that a pass takes away: along threads, across them, and between the ends of two threads in
+/// a line, which keeps folds wide.
+const THREAD: f32 = 1.0;
+const SHEAR: f32 = 0.3;
+const BEND: f32 = 0.05;
+/// The same between the ends of two threads of a border: a hem is folded over and stitched.
+const HEM: f32 = 0.5;
+/// Length between the ends of two threads in a line, as a part of their sum.
+const FLATNESS: f32 = 0.98;
+/// Depth to which cloth may sink below the fitted garment, metres: it stays over the skin.
+const SINK_M: f32 = 0.004;
+/// Part of a movement along the body that friction takes away in a step.
+const FRICTION: f32 = 0.8;
+/// Unevenness of the start, metres: cloth that is smooth everywhere would not know where to fold.
+const UNEVENNESS_M: f32 = 0.001;
+
+/// A garment on a body.
+#[derive(Clone, Copy, Debug)]
+pub struct Cloth<'a> {
+    /// The garment as it fits the posed body.
+    pub fitted: &'a QuadMesh,
+    /// The positions of its vertices on the body at rest, metres.
+    pub rest: &'a [Vec3],
+    /// How freely each vertex moves: 0 where it is held, 1 where nothing holds it.
+    pub mobility: &'a [f32],
+    /// Height of the floor or the seat, metres: what the garment has above it does not fall below.
+    pub support_m: f32,
+}
+
+/// A length that cloth keeps between two vertices.
+#[derive(Clone, Copy, Debug)]
+struct Length {
+    ends: [u32; 2],
+    length_m: f32,
+    stiffness: f32,
+}
+
+impl Cloth<'_> {
+    /// Returns the positions of the vertices once the cloth hangs, metres.
+    pub fn hung(&self) -> Vec<Vec3> {
+        let fitted: Vec<Vec3A> = self.fitted.positions.iter().map(|p| (*p).into()).collect();
+        let normals: Vec<Vec3A> = self.fitted.normals().into_iter().map(Vec3A::from).collect();
+        let edges = Edges::new(self.fitted);
+        let neighbors = neighbors(&edges, fitted.len());
+        let lengths = self.lengths(&edges, &neighbors);
+        let mut random = Random::new(0, 0);
+        let uneven = |((p, normal), m): ((&Vec3A, &Vec3A), &f32)| *p + *normal * (random.bell() * UNEVENNESS_M * m);
+        let mut positions: Vec<Vec3A> = fitted.iter().zip(&normals).zip(self.mobility).map(uneven).collect();
+        let mut before = positions.clone();
+        // The fitted vertex next to each vertex
+        let mut nearest: Vec<u32> = (0..fitted.len() as u32).collect();
+        for _ in 0..STEPS {
+            // Fall
+            for ((position, before), mobility) in positions.iter_mut().zip(&mut before).zip(self.mobility) {
+                let way = (*position - *before) * INERTIA + Vec3A::NEG_Y * FALL_M;
+                *before = *position;
+                *position += way * *mobility;
+            }
+            // Keep the lengths
+            for _ in 0..PASSES {
+                lengths.iter().for_each(|length| length.restore(&mut positions, self.mobility));
+            }
+            // Stay on the body and over the seat
+            for (vertex, position) in positions.iter_mut().enumerate().filter(|(v, _)| self.mobility[*v] > 0.0) {
+                position.y = position.y.max(self.support_m.min(fitted[vertex].y));
+                let body = walk_to_nearest(&fitted, &neighbors, nearest[vertex], *position);
+                nearest[vertex] = body;
+                let (point, normal) = (fitted[body as usize], normals[body as usize]);
+                let depth = (point - *position).dot(normal) - SINK_M;
+                if depth > 0.0 {
+                    *position += normal * depth;
+                    let way = *position - before[vertex];
+                    *position -= way.reject_from_normalized(normal) * FRICTION;
+                }
+            }
+        }
+        positions.into_iter().map(Vec3::from).collect()
+    }
+
+    /// Returns the lengths that the cloth keeps.
+    fn lengths(&self, edges: &Edges, neighbors: &[Vec<u32>]) -> Vec<Length> {
+        let rest = |a: u32, b: u32| self.rest[a as usize].distance(self.rest[b as usize]) * EASE;
+        let mut lengths = Vec::new();
+        let mut keep = |a: u32, b: u32, length_m: f32, stiffness: f32| {
+            // Nothing holds the ends of a length both of which are held
+            if self.mobility[a as usize] + self.mobility[b as usize] > 0.0 {
+                lengths.push(Length { ends: [a, b], length_m, stiffness });
+            }
+        };
+        for [a, b] in edges.edges.iter().map(|edge| edge.ends) {
+            keep(a, b, rest(a, b), THREAD);
+        }
+        for &[a, b, c, d] in &self.fitted.quads {
+            keep(a, c, rest(a, c), SHEAR);
+            keep(b, d, rest(b, d), SHEAR);
+        }
+        let straight = |vertex: u32, [a, b]: [u32; 2]| (rest(a, vertex) + rest(vertex, b)) * FLATNESS;
+        for (vertex, ends) in lines(&self.fitted.quads, neighbors) {
+            keep(ends[0], ends[1], straight(vertex, ends), BEND);
+        }
+        for (vertex, ends) in border_lines(edges, self.rest.len()) {
+            keep(ends[0], ends[1], straight(vertex, ends), HEM);
+        }
+        lengths
+    }
+}
+
+impl Length {
+    /// Moves the ends towards the length.
+    fn restore(&self, positions: &mut [Vec3A], mobility: &[f32]) {
+        let [a, b] = self.ends.map(|end| end as usize);
+        let way = positions[b] - positions[a];
+        let distance = way.length();
+        if distance > 1e-9 {
+            let share = (distance - self.length_m) / (distance * (mobility[a] + mobility[b])) * self.stiffness;
+            positions[a] += way * (share * mobility[a]);
+            positions[b] -= way * (share * mobility[b]);
+        }
+    }
+}
+
+/// Returns the vertices at the other ends of each vertex's edges.
+fn neighbors(edges: &Edges, count: usize) -> Vec<Vec<u32>> {
+    let mut neighbors = vec![Vec::with_capacity(4); count];
+    for [a, b] in edges.edges.iter().map(|edge| edge.ends) {
+        neighbors[a as usize].push(b);
+        neighbors[b as usize].push(a);
+    }
+    neighbors
+}
+
+/// Returns vertices of four quads, each with two neighbours on a line through it: two that no quad joins.
+fn lines(quads: &[[u32; 4]], neighbors: &[Vec<u32>]) -> Vec<(u32, [u32; 2])> {
+    // The pairs of neighbours that a quad joins at each vertex
+    let mut joined = vec![Vec::with_capacity(4); neighbors.len()];
+    for quad in quads {
+        for k in 0..4 {
+            joined[quad[k] as usize].push([quad[(k + 1) % 4], quad[(k + 3) % 4]]);
+        }
+    }
+    let mut lines = Vec::with_capacity(2 * neighbors.len());
+    for (vertex, (around, joined)) in neighbors.iter().zip(&joined).enumerate() {
+        if around.len() != 4 || joined.len() != 4 {
+            continue;
+        }
+        for (k, &a) in around.iter().enumerate() {
+            for &b in &around[k + 1..] {
+                if !joined.contains(&[a, b]) && !joined.contains(&[b, a]) {
+                    lines.push((vertex as u32, [a, b]));
+                }
+            }
+        }
+    }
+    lines
+}
+
+/// Returns the vertices of borders, each with the two beside it.
+fn border_lines(edges: &Edges, count: usize) -> Vec<(u32, [u32; 2])> {
+    let mut beside = vec![Vec::with_capacity(2); count];
+    for [a, b] in edges.edges.iter().filter(|edge| edge.is_border()).map(|edge| edge.ends) {
+        beside[a as usize].push(b);
+        beside[b as usize].push(a);
+    }
+    let line = |(vertex, ends): (usize, Vec<u32>)| Some((vertex as u32, <[u32; 2]>::try_from(ends).ok()?));
+    beside.into_iter().enumerate().filter_map(line).collect()
+}
+
+/// Returns the vertex of a mesh next to a position, by a walk along edges that starts at a vertex.
+fn walk_to_nearest(mesh: &[Vec3A], neighbors: &[Vec<u32>], start: u32, position: Vec3A) -> u32 {
+    let distance = |vertex: u32| mesh[vertex as usize].distance_squared(position);
+    let mut nearest = start;
+    loop {
+        let next = neighbors[nearest as usize].iter().copied().min_by(|a, b| distance(*a).total_cmp(&distance(*b)));
+        match next.filter(|next| distance(*next) < distance(nearest)) {
+            Some(next) => nearest = next,
+            None => return nearest,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::Vec2;
+
+    /// Squares along each edge of a sheet, and its width, metres.
+    const SQUARES: u32 = 10;
+    const WIDTH_M: f32 = 0.3;
+
+    /// A level sheet whose outside is above, or below, held at two of its edges.
+    fn sheet(is_upright: bool) -> (QuadMesh, Vec<f32>) {
+        let side = SQUARES + 1;
+        let at = |v: u32| Vec2::new((v % side) as f32, (v / side) as f32) / SQUARES as f32;
+        let corners = |v: u32| [v, v + side, v + side + 1, v + 1];
+        let quads = (0..side * side).filter(|v| v % side < SQUARES && v / side < SQUARES).map(corners);
+        let turned = |[a, b, c, d]: [u32; 4]| if is_upright { [a, b, c, d] } else { [d, c, b, a] };
+        let mesh = QuadMesh {
+            positions: (0..side * side).map(|v| Vec3::new(at(v).x, 0.0, at(v).y) * WIDTH_M).collect(),
+            quads: quads.map(turned).collect(),
+            ..QuadMesh::default()
+        };
+        let mobility = (0..side * side).map(|v| f32::from(at(v).x > 0.0 && at(v).x < 1.0)).collect();
+        (mesh, mobility)
+    }
+
+    /// A sheet of a length (1 + e) L between two bars at a distance L hangs in a shallow arc of the depth L sqrt(3 e / 8).
+    #[test]
+    fn a_sheet_between_bars_hangs_as_deep_as_its_ease_allows() {
+        let (mesh, mobility) = sheet(false);
+        let hung = Cloth { fitted: &mesh, rest: &mesh.positions, mobility: &mobility, support_m: -1.0 }.hung();
+        // Threads across the bars stretch by less than 4 % under their weight
+        let (middle, squares) = (hung.len() / 2, SQUARES as usize);
+        let thread = &hung[middle - squares / 2..=middle + squares / 2];
+        let length = thread.windows(2).map(|pair| pair[0].distance(pair[1])).sum::<f32>();
+        let stretch = length / (WIDTH_M * EASE);
+        assert!((1.0..1.04).contains(&stretch), "{stretch}");
+        let expected = WIDTH_M * (3.0 * (length / WIDTH_M - 1.0) / 8.0).sqrt();
+        let depth = -hung[middle].y;
+        assert!((depth / expected - 1.0).abs() < 0.05, "{depth} m, expected {expected} m");
+    }
+
+    #[test]
+    fn cloth_that_lies_on_a_body_stays_on_it() {
+        let (mesh, mobility) = sheet(true);
+        let hung = Cloth { fitted: &mesh, rest: &mesh.positions, mobility: &mobility, support_m: -1.0 }.hung();
+        assert!(hung.iter().all(|p| p.y > -SINK_M - 1e-4), "{hung:?}");
+        let held = hung.iter().zip(&mesh.positions).zip(&mobility).filter(|(_, m)| **m == 0.0);
+        assert!(held.into_iter().all(|((p, start), _)| p == start));
+    }
+
+    #[test]
+    fn a_line_through_a_vertex_joins_the_ends_of_two_threads() {
+        let (mesh, _) = sheet(true);
+        let edges = Edges::new(&mesh);
+        let lines = lines(&mesh.quads, &neighbors(&edges, mesh.positions.len()));
+        assert_eq!(lines.len() as u32, 2 * (SQUARES - 1) * (SQUARES - 1), "two at each inner vertex");
+        for (vertex, [a, b]) in lines {
+            let [v, a, b] = [vertex, a, b].map(|v| mesh.positions[v as usize]);
+            assert!(((a + b) / 2.0).distance(v) < 1e-6, "{a} {v} {b}");
+        }
+    }
+}

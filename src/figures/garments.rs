@@ -1,0 +1,104 @@
+//! Clothes: patches of the base mesh's helper meshes, cut at the edges of garments, fitted to the body and hung as cloth.
+
+use super::body_data::BodyData;
+use super::cloth::Cloth;
+use super::patch::Patch;
+use super::posed_body::PosedBody;
+use super::regions::{Clothes, Edges, Garment};
+use super::skin_colors::NO_SKIN;
+use super::subdivide::QuadMesh;
+use crate::scene::{Bottom, Figure, Top};
+use glam::Vec3;
+use rayon::prelude::*;
+
+/// Distances of a collar and of straps from the cage of the skin, metres.
+const COLLAR_M: f32 = 0.007;
+const STRAP_M: f32 = 0.002;
+/// Distance from where a garment is held at which it moves freely, metres.
+const FREE_M: f32 = 0.04;
+
+/// Returns the garments of a figure in its pose, subdivided once, with the part of each.
+pub fn dress(data: &BodyData, figure: &Figure, body: &PosedBody, part: impl Fn(Garment) -> u8 + Sync) -> QuadMesh {
+    let worn = |garment: &Garment| {
+        let fitted = |positions| fitted(data, figure, body, *garment, positions, part(*garment)).subdivided();
+        let mut mesh = fitted(&body.positions);
+        if *garment != Garment::Shoe {
+            let rest = fitted(&body.rest);
+            let mobility: Vec<f32> = rest.values.iter().map(|value| value.x).collect();
+            let support_m = figure.pose.seat_m.unwrap_or(0.0);
+            mesh.positions = Cloth { fitted: &mesh, rest: &rest.positions, mobility: &mobility, support_m }.hung();
+        }
+        mesh.values.fill(NO_SKIN);
+        mesh
+    };
+    let mut clothes = QuadMesh::default();
+    for mesh in [Garment::Top, Garment::Bottom, Garment::Shoe].par_iter().map(worn).collect::<Vec<_>>() {
+        clothes.append(&mesh);
+    }
+    clothes
+}
+
+/// Returns a garment as it fits the body, whose vertices have these positions. The values are 0 where it is held, and 1
+/// where it moves freely.
+fn fitted(
+    data: &BodyData,
+    figure: &Figure,
+    body: &PosedBody,
+    garment: Garment,
+    positions: &[Vec3],
+    part: u8,
+) -> QuadMesh {
+    let (edges, clothes) = (Edges::shipped(), Clothes::new(figure));
+    let is_skirt = garment == Garment::Bottom && clothes.bottom == Bottom::Skirt;
+    let group = if is_skirt { "helper-skirt" } else { "helper-tights" };
+    let field = |v: u16| match garment {
+        Garment::Bottom => edges.bottom(v, clothes.bottom),
+        Garment::Top => edges.top(v, clothes),
+        Garment::Shoe => edges.shoe(v),
+    };
+    let mut patch = Patch::new(data, group, positions, &|quad| body.has(quad) && quad.iter().any(|&v| field(v) > 0.0));
+    patch.move_border(&|v| field(v).min(body.above_cut(v)));
+    patch.move_outwards(&|v| edges.looseness(v, garment, clothes));
+    // Only the edges of collar and straps lie close: further out the garment hangs from the shoulders
+    if garment == Garment::Top {
+        let shoulders =
+            Patch::new(data, "body", positions, &|quad| quad.iter().all(|&v| edges.is_near_close_edge(v, clothes.top)));
+        let height_m = if clothes.top == Top::Straps { STRAP_M } else { COLLAR_M };
+        patch.lay_on(&shoulders, height_m, &|v| edges.nearness_to_close_edge(v, clothes.top).powi(8));
+    }
+    let mobility = |v: u16| {
+        let to_hold = edges.to_hold(v, garment, clothes).min(body.above_cut(v));
+        (to_hold / FREE_M).clamp(0.0, 1.0)
+    };
+    patch.into_mesh(part, &|v| Vec3::splat(mobility(v)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::figures::READY;
+
+    /// Garments fold at elbows, armpits and waist: their normals turn away from those of the fitted ones by more than the
+    /// few degrees of a garment that only sags. None reaches through the skin below, or leaves the body.
+    #[test]
+    fn garments_of_the_ready_figures_fold_and_stay_on_the_body() {
+        let data = BodyData::shipped();
+        for ready in READY {
+            let figure = ready.figure();
+            let body = PosedBody::new(data, &figure);
+            for garment in [Garment::Top, Garment::Bottom] {
+                let fitted = fitted(data, &figure, &body, garment, &body.positions, 0).subdivided();
+                let hung = dress(data, &figure, &body, |other| u8::from(other == garment));
+                let quads = hung.quads.iter().zip(&hung.parts).filter(|(_, part)| **part == 1).map(|(quad, _)| *quad);
+                let first = quads.clone().flatten().min().unwrap() as usize;
+                let positions = &hung.positions[first..first + fitted.positions.len()];
+                let (before, after) = (fitted.normals(), hung.normals());
+                let turns = before.iter().zip(&after[first..]).map(|(a, b)| a.angle_between(*b).to_degrees());
+                let turn = turns.sum::<f32>() / before.len() as f32;
+                let farthest = positions.iter().zip(&fitted.positions).map(|(a, b)| a.distance(*b)).fold(0.0, f32::max);
+                assert!((3.0..25.0).contains(&turn), "{} {garment:?}: {turn} degrees", ready.name);
+                assert!(farthest < 0.15, "{} {garment:?}: {farthest} m", ready.name);
+            }
+        }
+    }
+}
