@@ -222,7 +222,19 @@ fn slot_visibility(slot: u32, position: vec3f, geometric_normal: vec3f, is_fibre
         }
     }
     let searched = select(1.0 - blocked / f32(taps), select(1.0, 0.0, fully_blocked), skip_filter);
-    return select(searched, select(1.0, 0.0, below), decided);
+    // Compare with what is above the receiver's horizon: the rest, which the body itself hides, sends no light
+    let above = part_above_horizon(slot, geometric_normal, height);
+    return select(min(searched / above, 1.0), select(1.0, 0.0, below), decided);
+}
+
+// Returns the part of an emitter's outline that is above a receiver's horizon, at least 0.02; 1 for a receiver that
+// faces its centre, which does not hide the rest from itself in the map's far side.
+fn part_above_horizon(slot: u32, geometric_normal: vec3f, height: f32) -> f32 {
+    let axes = vec2f(dot(geometric_normal, shadows.slots[slot].right), dot(geometric_normal, shadows.slots[slot].up));
+    let extent = max(length(axes * shadows.slots[slot].softness), 1e-6);
+    let t = clamp(height / extent, -1.0, 0.0);
+    let segment = 0.5 + (t * sqrt(1.0 - t * t) + asin(t)) / PI;
+    return select(max(segment, 0.02), 1.0, height > 0.0);
 }
 
 // Returns the irradiance weight of a part of an emitter at a surface. A part whose centre is below the horizon sees the
