@@ -243,7 +243,7 @@ mod tests {
         for (joint, by) in [
             (Joint::Hand(Side::Left), Vec3::new(0.3, 0.5, 0.0)),
             (Joint::Hand(Side::Right), Vec3::new(-0.1, 0.25, 0.0)),
-            (Joint::Elbow(Side::Left), Vec3::new(0.15, 0.1, 0.0)),
+            (Joint::Elbow(Side::Left), Vec3::new(0.15, 0.12, 0.0)),
             (Joint::Head, Vec3::new(0.03, -0.03, 0.0)),
             (Joint::Chest, Vec3::new(0.03, 0.0, 0.0)),
             (Joint::Foot(Side::Right), Vec3::new(-0.15, 0.0, 0.0)),
