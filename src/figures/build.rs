@@ -110,7 +110,7 @@ fn cage(data: &BodyData, figure: &Figure, body: &PosedBody) -> QuadMesh {
     skin.move_border(&|v| body.above_cut(v));
     let eyes = data.eyes_middle();
     let mut mesh = skin.into_mesh(SKIN, &|v| data.positions[usize::from(v)] - eyes);
-    // Closed lips hide teeth from everything but shadows that are not quite sharp
+    // Closed lips hide the teeth; the preview's shadows are too soft for the slit between them
     let Expression { mouth_open, teeth, .. } = figure.expression;
     for &(group, part) in INSIDE_MOUTH.iter().filter(|_| mouth_open > 0.0 || teeth > 0.0) {
         let patch = Patch::new(data, group, &body.positions, &|quad| body.has(quad));

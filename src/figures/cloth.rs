@@ -1,38 +1,38 @@
-//! Cloth that hangs from a body, by position based dynamics (Müller et al. 2007, "Position Based Dynamics").
+//! Drapes cloth over a body by position based dynamics (Müller et al. 2007, "Position Based Dynamics").
 //!
-//! A garment starts as it fits the posed body. Its lengths are those on the body at rest, whose arms are spread, with some
-//! ease: it folds where the pose makes it shorter and sags where it is loose. The body is the fitted garment itself, which
-//! lies some millimetres over the skin: a vertex stays outside the plane of the nearest fitted vertex. Cloth does not meet
-//! itself. A few steps are enough: cloth that a body wears moves by centimetres.
+//! A garment starts as it fits the posed body. Its rest lengths are those on the body in the rest pose, whose arms are
+//! spread, with some ease: it folds where the pose shortens it and sags where it is loose. The fitted garment, some
+//! millimetres over the skin, is what it collides with: a vertex stays outside the tangent plane of the nearest fitted
+//! vertex. Cloth does not collide with itself. A few steps are enough: clothes move by centimetres.
 
 use super::random::Random;
 use super::subdivide::{Edges, QuadMesh};
 use glam::{Vec3, Vec3A};
 
-/// Steps of time, and passes over all lengths in each.
+/// Time steps, and iterations over all constraints in each.
 const STEPS: usize = 20;
-const PASSES: usize = 8;
-/// Way that cloth falls in the first step, metres.
+const ITERATIONS: usize = 8;
+/// Distance that free cloth falls in the first step, metres.
 const FALL_M: f32 = 0.001;
-/// Part of its velocity that cloth keeps from step to step.
-const INERTIA: f32 = 0.9;
-/// Lengths of cloth, as factors of those of the fitted garment at rest.
+/// Part of its velocity that cloth keeps from step to step (damping).
+const DAMPING: f32 = 0.9;
+/// Rest lengths of cloth, as factors of those of the fitted garment in the rest pose.
 const EASE: f32 = 1.04;
-/// Part of an error in length that a pass takes away: along threads, across them, and between the ends of two threads in
-/// a line, which keeps folds wide.
-const THREAD: f32 = 1.0;
+/// Stiffnesses, the parts of an error in length that an iteration corrects: along edges, along the diagonals of quads,
+/// and between the ends of two edges in a line, which keeps folds wide.
+const STRETCH: f32 = 1.0;
 const SHEAR: f32 = 0.3;
 const BEND: f32 = 0.05;
-/// The same between the ends of two threads of a border: a hem is folded over and stitched.
+/// The same between the ends of two edges of a border: a hem is folded over and stitched.
 const HEM: f32 = 0.5;
-/// Length between the ends of two threads in a line, as a part of their sum.
+/// Rest length between the ends of two edges in a line, as a part of their sum.
 const FLATNESS: f32 = 0.98;
-/// Depth to which cloth may sink below the fitted garment, metres: it stays over the skin.
+/// Depth to which cloth may sink below the fitted garment, metres; it is still over the skin there.
 const SINK_M: f32 = 0.004;
 /// Part of a movement along the body that friction takes away in a step.
 const FRICTION: f32 = 0.8;
-/// Unevenness of the start, metres: cloth that is smooth everywhere would not know where to fold.
-const UNEVENNESS_M: f32 = 0.001;
+/// Standard deviation of the noise on the start, metres: without it smooth cloth would not buckle.
+const NOISE_M: f32 = 0.001;
 
 /// A garment on a body.
 #[derive(Clone, Copy, Debug)]
@@ -47,40 +47,40 @@ pub struct Cloth<'a> {
     pub support_m: f32,
 }
 
-/// A length that cloth keeps between two vertices.
+/// A distance that two vertices keep.
 #[derive(Clone, Copy, Debug)]
-struct Length {
+struct DistanceConstraint {
     ends: [u32; 2],
-    length_m: f32,
+    rest_length_m: f32,
     stiffness: f32,
 }
 
 impl Cloth<'_> {
-    /// Returns the positions of the vertices once the cloth hangs, metres.
-    pub fn hung(&self) -> Vec<Vec3> {
+    /// Returns the positions of the vertices after the last step, metres.
+    pub fn draped(&self) -> Vec<Vec3> {
         let fitted: Vec<Vec3A> = self.fitted.positions.iter().map(|p| (*p).into()).collect();
         let normals: Vec<Vec3A> = self.fitted.normals().into_iter().map(Vec3A::from).collect();
         let edges = Edges::new(self.fitted);
         let neighbors = neighbors(&edges, fitted.len());
-        let lengths = self.lengths(&edges, &neighbors);
+        let constraints = self.constraints(&edges, &neighbors);
         let mut random = Random::new(0, 0);
-        let uneven = |((p, normal), m): ((&Vec3A, &Vec3A), &f32)| *p + *normal * (random.bell() * UNEVENNESS_M * m);
-        let mut positions: Vec<Vec3A> = fitted.iter().zip(&normals).zip(self.mobility).map(uneven).collect();
+        let noisy = |((p, normal), m): ((&Vec3A, &Vec3A), &f32)| *p + *normal * (random.bell() * NOISE_M * m);
+        let mut positions: Vec<Vec3A> = fitted.iter().zip(&normals).zip(self.mobility).map(noisy).collect();
         let mut before = positions.clone();
-        // The fitted vertex next to each vertex
+        // The fitted vertex nearest to each vertex
         let mut nearest: Vec<u32> = (0..fitted.len() as u32).collect();
         for _ in 0..STEPS {
             // Fall
             for ((position, before), mobility) in positions.iter_mut().zip(&mut before).zip(self.mobility) {
-                let way = (*position - *before) * INERTIA + Vec3A::NEG_Y * FALL_M;
+                let way = (*position - *before) * DAMPING + Vec3A::NEG_Y * FALL_M;
                 *before = *position;
                 *position += way * *mobility;
             }
-            // Keep the lengths
-            for _ in 0..PASSES {
-                lengths.iter().for_each(|length| length.restore(&mut positions, self.mobility));
+            // Project the constraints
+            for _ in 0..ITERATIONS {
+                constraints.iter().for_each(|constraint| constraint.project(&mut positions, self.mobility));
             }
-            // Stay on the body and over the seat
+            // Collide with the body and the seat
             for (vertex, position) in positions.iter_mut().enumerate().filter(|(v, _)| self.mobility[*v] > 0.0) {
                 position.y = position.y.max(self.support_m.min(fitted[vertex].y));
                 let body = walk_to_nearest(&fitted, &neighbors, nearest[vertex], *position);
@@ -97,18 +97,18 @@ impl Cloth<'_> {
         positions.into_iter().map(Vec3::from).collect()
     }
 
-    /// Returns the lengths that the cloth keeps.
-    fn lengths(&self, edges: &Edges, neighbors: &[Vec<u32>]) -> Vec<Length> {
+    /// Returns the constraints against stretch, shear and bending.
+    fn constraints(&self, edges: &Edges, neighbors: &[Vec<u32>]) -> Vec<DistanceConstraint> {
         let rest = |a: u32, b: u32| self.rest[a as usize].distance(self.rest[b as usize]) * EASE;
-        let mut lengths = Vec::new();
-        let mut keep = |a: u32, b: u32, length_m: f32, stiffness: f32| {
-            // Nothing holds the ends of a length both of which are held
+        let mut constraints = Vec::new();
+        let mut keep = |a: u32, b: u32, rest_length_m: f32, stiffness: f32| {
+            // Two held vertices do not move
             if self.mobility[a as usize] + self.mobility[b as usize] > 0.0 {
-                lengths.push(Length { ends: [a, b], length_m, stiffness });
+                constraints.push(DistanceConstraint { ends: [a, b], rest_length_m, stiffness });
             }
         };
         for [a, b] in edges.edges.iter().map(|edge| edge.ends) {
-            keep(a, b, rest(a, b), THREAD);
+            keep(a, b, rest(a, b), STRETCH);
         }
         for &[a, b, c, d] in &self.fitted.quads {
             keep(a, c, rest(a, c), SHEAR);
@@ -121,18 +121,18 @@ impl Cloth<'_> {
         for (vertex, ends) in border_lines(edges, self.rest.len()) {
             keep(ends[0], ends[1], straight(vertex, ends), HEM);
         }
-        lengths
+        constraints
     }
 }
 
-impl Length {
-    /// Moves the ends towards the length.
-    fn restore(&self, positions: &mut [Vec3A], mobility: &[f32]) {
+impl DistanceConstraint {
+    /// Moves the ends towards the rest length, each by its share of their mobility.
+    fn project(&self, positions: &mut [Vec3A], mobility: &[f32]) {
         let [a, b] = self.ends.map(|end| end as usize);
         let way = positions[b] - positions[a];
         let distance = way.length();
         if distance > 1e-9 {
-            let share = (distance - self.length_m) / (distance * (mobility[a] + mobility[b])) * self.stiffness;
+            let share = (distance - self.rest_length_m) / (distance * (mobility[a] + mobility[b])) * self.stiffness;
             positions[a] += way * (share * mobility[a]);
             positions[b] -= way * (share * mobility[b]);
         }
@@ -149,9 +149,9 @@ fn neighbors(edges: &Edges, count: usize) -> Vec<Vec<u32>> {
     neighbors
 }
 
-/// Returns vertices of four quads, each with two neighbours on a line through it: two that no quad joins.
+/// Returns the vertices with four quads, twice, each time with two opposite neighbours: two that no quad has in common.
 fn lines(quads: &[[u32; 4]], neighbors: &[Vec<u32>]) -> Vec<(u32, [u32; 2])> {
-    // The pairs of neighbours that a quad joins at each vertex
+    // The pairs of each vertex's neighbours that have a quad in common
     let mut joined = vec![Vec::with_capacity(4); neighbors.len()];
     for quad in quads {
         for k in 0..4 {
@@ -185,7 +185,7 @@ fn border_lines(edges: &Edges, count: usize) -> Vec<(u32, [u32; 2])> {
     beside.into_iter().enumerate().filter_map(line).collect()
 }
 
-/// Returns the vertex of a mesh next to a position, by a walk along edges that starts at a vertex.
+/// Returns the vertex of a mesh that is nearest to a position, by a descent along edges from a start.
 fn walk_to_nearest(mesh: &[Vec3A], neighbors: &[Vec<u32>], start: u32, position: Vec3A) -> u32 {
     let distance = |vertex: u32| mesh[vertex as usize].distance_squared(position);
     let mut nearest = start;
@@ -227,29 +227,29 @@ mod tests {
     #[test]
     fn a_sheet_between_bars_hangs_as_deep_as_its_ease_allows() {
         let (mesh, mobility) = sheet(false);
-        let hung = Cloth { fitted: &mesh, rest: &mesh.positions, mobility: &mobility, support_m: -1.0 }.hung();
-        // Threads across the bars stretch by less than 4 % under their weight
-        let (middle, squares) = (hung.len() / 2, SQUARES as usize);
-        let thread = &hung[middle - squares / 2..=middle + squares / 2];
-        let length = thread.windows(2).map(|pair| pair[0].distance(pair[1])).sum::<f32>();
+        let draped = Cloth { fitted: &mesh, rest: &mesh.positions, mobility: &mobility, support_m: -1.0 }.draped();
+        // The edges across the bars stretch by less than 4 % under their weight
+        let (middle, squares) = (draped.len() / 2, SQUARES as usize);
+        let line = &draped[middle - squares / 2..=middle + squares / 2];
+        let length = line.windows(2).map(|pair| pair[0].distance(pair[1])).sum::<f32>();
         let stretch = length / (WIDTH_M * EASE);
         assert!((1.0..1.04).contains(&stretch), "{stretch}");
         let expected = WIDTH_M * (3.0 * (length / WIDTH_M - 1.0) / 8.0).sqrt();
-        let depth = -hung[middle].y;
+        let depth = -draped[middle].y;
         assert!((depth / expected - 1.0).abs() < 0.05, "{depth} m, expected {expected} m");
     }
 
     #[test]
     fn cloth_that_lies_on_a_body_stays_on_it() {
         let (mesh, mobility) = sheet(true);
-        let hung = Cloth { fitted: &mesh, rest: &mesh.positions, mobility: &mobility, support_m: -1.0 }.hung();
-        assert!(hung.iter().all(|p| p.y > -SINK_M - 1e-4), "{hung:?}");
-        let held = hung.iter().zip(&mesh.positions).zip(&mobility).filter(|(_, m)| **m == 0.0);
+        let draped = Cloth { fitted: &mesh, rest: &mesh.positions, mobility: &mobility, support_m: -1.0 }.draped();
+        assert!(draped.iter().all(|p| p.y > -SINK_M - 1e-4), "{draped:?}");
+        let held = draped.iter().zip(&mesh.positions).zip(&mobility).filter(|(_, m)| **m == 0.0);
         assert!(held.into_iter().all(|((p, start), _)| p == start));
     }
 
     #[test]
-    fn a_line_through_a_vertex_joins_the_ends_of_two_threads() {
+    fn a_line_through_a_vertex_joins_the_ends_of_two_edges() {
         let (mesh, _) = sheet(true);
         let edges = Edges::new(&mesh);
         let lines = lines(&mesh.quads, &neighbors(&edges, mesh.positions.len()));

@@ -1,4 +1,4 @@
-//! Clothes: patches of the base mesh's helper meshes, cut at the edges of garments, fitted to the body and hung as cloth.
+//! Clothes: patches of the base mesh's helper meshes, cut at the edges of garments, fitted to the body and draped as cloth.
 
 use super::body_data::BodyData;
 use super::cloth::Cloth;
@@ -20,14 +20,15 @@ const FREE_M: f32 = 0.04;
 /// Returns the garments of a figure in its pose, subdivided once, with the part of each.
 pub fn dress(data: &BodyData, figure: &Figure, body: &PosedBody, part: impl Fn(Garment) -> u8 + Sync) -> QuadMesh {
     let worn = |garment: &Garment| {
-        let fitted = |positions| fitted(data, figure, body, *garment, positions, part(*garment)).subdivided();
+        let fitted = |positions| fitted(data, figure, body, *garment, positions).subdivided();
         let mut mesh = fitted(&body.positions);
         if *garment != Garment::Shoe {
             let rest = fitted(&body.rest);
             let mobility: Vec<f32> = rest.values.iter().map(|value| value.x).collect();
             let support_m = figure.pose.seat_m.unwrap_or(0.0);
-            mesh.positions = Cloth { fitted: &mesh, rest: &rest.positions, mobility: &mobility, support_m }.hung();
+            mesh.positions = Cloth { fitted: &mesh, rest: &rest.positions, mobility: &mobility, support_m }.draped();
         }
+        mesh.parts.fill(part(*garment));
         mesh.values.fill(NO_SKIN);
         mesh
     };
@@ -38,16 +39,9 @@ pub fn dress(data: &BodyData, figure: &Figure, body: &PosedBody, part: impl Fn(G
     clothes
 }
 
-/// Returns a garment as it fits the body, whose vertices have these positions. The values are 0 where it is held, and 1
-/// where it moves freely.
-fn fitted(
-    data: &BodyData,
-    figure: &Figure,
-    body: &PosedBody,
-    garment: Garment,
-    positions: &[Vec3],
-    part: u8,
-) -> QuadMesh {
+/// Returns a garment as it fits the body whose vertices have these positions, before subdivision. Its values are its
+/// mobility, in all three components: 0 where it is held, 1 where it is free.
+fn fitted(data: &BodyData, figure: &Figure, body: &PosedBody, garment: Garment, positions: &[Vec3]) -> QuadMesh {
     let (edges, clothes) = (Edges::shipped(), Clothes::new(figure));
     let is_skirt = garment == Garment::Bottom && clothes.bottom == Bottom::Skirt;
     let group = if is_skirt { "helper-skirt" } else { "helper-tights" };
@@ -70,7 +64,7 @@ fn fitted(
         let to_hold = edges.to_hold(v, garment, clothes).min(body.above_cut(v));
         (to_hold / FREE_M).clamp(0.0, 1.0)
     };
-    patch.into_mesh(part, &|v| Vec3::splat(mobility(v)))
+    patch.into_mesh(0, &|v| Vec3::splat(mobility(v)))
 }
 
 #[cfg(test)]
@@ -78,21 +72,22 @@ mod tests {
     use super::*;
     use crate::figures::READY;
 
-    /// Garments fold at elbows, armpits and waist: their normals turn away from those of the fitted ones by more than the
-    /// few degrees of a garment that only sags. None reaches through the skin below, or leaves the body.
+    /// Normals of folded garments turn away from those of the fitted ones by more than the few degrees of a garment that
+    /// only sags.
     #[test]
-    fn garments_of_the_ready_figures_fold_and_stay_on_the_body() {
+    fn garments_of_the_ready_figures_fold_and_move_by_centimetres() {
         let data = BodyData::shipped();
         for ready in READY {
             let figure = ready.figure();
             let body = PosedBody::new(data, &figure);
             for garment in [Garment::Top, Garment::Bottom] {
-                let fitted = fitted(data, &figure, &body, garment, &body.positions, 0).subdivided();
-                let hung = dress(data, &figure, &body, |other| u8::from(other == garment));
-                let quads = hung.quads.iter().zip(&hung.parts).filter(|(_, part)| **part == 1).map(|(quad, _)| *quad);
+                let fitted = fitted(data, &figure, &body, garment, &body.positions).subdivided();
+                let draped = dress(data, &figure, &body, |other| u8::from(other == garment));
+                let quads =
+                    draped.quads.iter().zip(&draped.parts).filter(|(_, part)| **part == 1).map(|(quad, _)| *quad);
                 let first = quads.clone().flatten().min().unwrap() as usize;
-                let positions = &hung.positions[first..first + fitted.positions.len()];
-                let (before, after) = (fitted.normals(), hung.normals());
+                let positions = &draped.positions[first..first + fitted.positions.len()];
+                let (before, after) = (fitted.normals(), draped.normals());
                 let turns = before.iter().zip(&after[first..]).map(|(a, b)| a.angle_between(*b).to_degrees());
                 let turn = turns.sum::<f32>() / before.len() as f32;
                 let farthest = positions.iter().zip(&fitted.positions).map(|(a, b)| a.distance(*b)).fold(0.0, f32::max);

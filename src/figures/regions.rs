@@ -71,7 +71,7 @@ fn to_sleeve_end(at: f32, top: Top) -> f32 {
     (end - at) * 0.27
 }
 
-/// The end of trousers is held by the shoe as cloth at this distance from where it is held, metres.
+/// Distance from a hold that the ends of trousers are counted as, metres: they lie on the shoes, which slow their fall.
 const ON_SHOE_M: f32 = 0.01;
 /// Distance from the neckline at which a garment hangs freely, metres.
 const COLLAR_END_M: f32 = 0.06;

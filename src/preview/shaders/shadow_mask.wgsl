@@ -222,13 +222,13 @@ fn slot_visibility(slot: u32, position: vec3f, geometric_normal: vec3f, is_fibre
         }
     }
     let searched = select(1.0 - blocked / f32(taps), select(1.0, 0.0, fully_blocked), skip_filter);
-    // Compare with what is above the receiver's horizon: the rest, which the body itself hides, sends no light
+    // Count only the part of the emitter above the receiver's horizon: shading leaves out the rest, too
     let above = part_above_horizon(slot, geometric_normal, height);
     return select(min(searched / above, 1.0), select(1.0, 0.0, below), decided);
 }
 
-// Returns the part of an emitter's outline that is above a receiver's horizon, at least 0.02; 1 for a receiver that
-// faces its centre, which does not hide the rest from itself in the map's far side.
+// Returns the part of an emitter's outline, taken as an ellipse, above a receiver's horizon, at least 0.02. It is 1 for a
+// receiver that faces the emitter's centre: in its map, the far side, its own body does not block the part below.
 fn part_above_horizon(slot: u32, geometric_normal: vec3f, height: f32) -> f32 {
     let axes = vec2f(dot(geometric_normal, shadows.slots[slot].right), dot(geometric_normal, shadows.slots[slot].up));
     let extent = max(length(axes * shadows.slots[slot].softness), 1e-6);
