@@ -56,7 +56,7 @@ impl Mask {
         let last = self.size.saturating_sub(1);
         let place = |x: f32| {
             let x = (x.clamp(0.0, 1.0) * self.size as f32 - 0.5).clamp(0.0, last as f32);
-            (x as usize, x.fract())
+            (x as usize, x - (x as usize) as f32)
         };
         let ((x, right), (y, down)) = (place(uv.x), place(1.0 - uv.y));
         let value = |x: usize, y: usize| {

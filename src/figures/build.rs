@@ -8,7 +8,7 @@ use super::patch::Patch;
 use super::posed_body::PosedBody;
 use super::regions::{Clothes, Edges, Garment};
 use super::skin_colors::{NO_SKIN, skin_colors};
-use super::subdivide::QuadMesh;
+use super::subdivide::{QuadMesh, Surface};
 use crate::scene::{Expression, Figure, FigureMeshes, Mesh, MeshPart};
 use glam::{Affine3A, Vec2, Vec3};
 use std::sync::Arc;
@@ -32,26 +32,27 @@ pub fn build(data: &BodyData, figure: &Figure) -> FigureMeshes {
     let eyes = eyeballs.map(|ball| ball.translation.into());
     let hair_body = HairBody { data, positions: &body.positions, head: body.head(data), eyes };
     let (eyes_mesh, eye_colors) = both_eyes(eyeballs);
-    let finish = |mut quads: QuadMesh, mut normals: Vec<Vec3>| {
-        let mut colors = skin_colors(&quads.values, figure);
+    let finish = |mut quads: QuadMesh, normals: &[Vec3], colors: &[Vec3]| {
+        // The vertices of the coarse mesh are the first ones of the fine mesh: both lie on the limit surface
+        let count = quads.positions.len();
+        split_skin(data, &mut quads);
         quads.append(&eyes_mesh);
-        normals.extend(eyes_mesh.normals());
-        colors.extend(&eye_colors);
-        to_mesh(&quads, &normals, &colors)
+        let normals = [&normals[..count], &eyes_mesh.normals()].concat();
+        to_mesh(&quads, &normals, &[&colors[..count], &eye_colors].concat())
     };
     let skin = || {
-        let (mut coarse, clothes) =
-            rayon::join(|| cage(data, figure, &body).subdivided(), || dress(data, figure, &body, garment_part));
+        let (mut coarse, clothes) = rayon::join(
+            || Surface::new(cage(data, figure, &body)).subdivided(),
+            || dress(data, figure, &body, garment_part),
+        );
         coarse.append(&clothes);
         let mut fine = coarse.subdivided();
         fine.move_to_limit();
-        let normals = fine.normals();
-        // The vertices of the coarse mesh are the first ones of the fine mesh: both lie on the limit surface
+        let (mut coarse, fine) = (coarse.mesh, fine.mesh);
         let shared = coarse.positions.len();
         coarse.positions.copy_from_slice(&fine.positions[..shared]);
-        let coarse_normals = normals[..shared].to_vec();
-        rayon::join(|| split_skin(data, &mut coarse), || split_skin(data, &mut fine));
-        rayon::join(|| finish(coarse, coarse_normals), || finish(fine, normals))
+        let (normals, colors) = rayon::join(|| fine.normals(), || skin_colors(&fine.values, figure));
+        rayon::join(|| finish(coarse, &normals, &colors), || finish(fine, &normals, &colors))
     };
     let ((mut coarse, mut fine), strands) = rayon::join(skin, || hair::grow(&hair_body, figure));
     coarse.strands = hair::thinned(&strands);

@@ -6,7 +6,7 @@
 //! vertex. Cloth does not collide with itself. A few steps are enough: clothes move by centimetres.
 
 use super::random::Random;
-use super::subdivide::{Edges, QuadMesh};
+use super::subdivide::{Edges, Surface};
 use glam::{Vec3, Vec3A};
 
 /// Time steps, and iterations over all constraints in each.
@@ -31,6 +31,8 @@ const FLATNESS: f32 = 0.98;
 const SINK_M: f32 = 0.004;
 /// Part of a movement along the body that friction takes away in a step.
 const FRICTION: f32 = 0.8;
+/// Constraints between two that may share a vertex.
+const APART: usize = 8;
 /// Standard deviation of the noise on the start, metres: without it smooth cloth would not buckle.
 const NOISE_M: f32 = 0.001;
 
@@ -38,7 +40,7 @@ const NOISE_M: f32 = 0.001;
 #[derive(Clone, Copy, Debug)]
 pub struct Cloth<'a> {
     /// The garment as it fits the posed body.
-    pub fitted: &'a QuadMesh,
+    pub fitted: &'a Surface,
     /// The positions of its vertices on the body at rest, metres.
     pub rest: &'a [Vec3],
     /// How freely each vertex moves: 0 where it is held, 1 where nothing holds it.
@@ -52,17 +54,18 @@ pub struct Cloth<'a> {
 struct DistanceConstraint {
     ends: [u32; 2],
     rest_length_m: f32,
-    stiffness: f32,
+    /// Part of an error in length that each end corrects.
+    shares: [f32; 2],
 }
 
 impl Cloth<'_> {
     /// Returns the positions of the vertices after the last step, metres.
     pub fn draped(&self) -> Vec<Vec3> {
-        let fitted: Vec<Vec3A> = self.fitted.positions.iter().map(|p| (*p).into()).collect();
-        let normals: Vec<Vec3A> = self.fitted.normals().into_iter().map(Vec3A::from).collect();
-        let edges = Edges::new(self.fitted);
-        let neighbors = neighbors(&edges, fitted.len());
-        let constraints = self.constraints(&edges, &neighbors);
+        let Surface { mesh, edges } = self.fitted;
+        let fitted: Vec<Vec3A> = mesh.positions.iter().map(|p| (*p).into()).collect();
+        let normals: Vec<Vec3A> = mesh.normals().into_iter().map(Vec3A::from).collect();
+        let neighbors = neighbors(edges, fitted.len());
+        let constraints = self.constraints(edges, &neighbors);
         let mut random = Random::new(0, 0);
         let noisy = |((p, normal), m): ((&Vec3A, &Vec3A), &f32)| *p + *normal * (random.bell() * NOISE_M * m);
         let mut positions: Vec<Vec3A> = fitted.iter().zip(&normals).zip(self.mobility).map(noisy).collect();
@@ -78,7 +81,7 @@ impl Cloth<'_> {
             }
             // Project the constraints
             for _ in 0..ITERATIONS {
-                constraints.iter().for_each(|constraint| constraint.project(&mut positions, self.mobility));
+                constraints.iter().for_each(|constraint| constraint.project(&mut positions));
             }
             // Collide with the body and the seat
             for (vertex, position) in positions.iter_mut().enumerate().filter(|(v, _)| self.mobility[*v] > 0.0) {
@@ -103,40 +106,50 @@ impl Cloth<'_> {
         let mut constraints = Vec::new();
         let mut keep = |a: u32, b: u32, rest_length_m: f32, stiffness: f32| {
             // Two held vertices do not move
-            if self.mobility[a as usize] + self.mobility[b as usize] > 0.0 {
-                constraints.push(DistanceConstraint { ends: [a, b], rest_length_m, stiffness });
+            let mobility = [a, b].map(|end| self.mobility[end as usize]);
+            let sum = mobility[0] + mobility[1];
+            if sum > 0.0 {
+                let shares = mobility.map(|m| stiffness * m / sum);
+                constraints.push(DistanceConstraint { ends: [a, b], rest_length_m, shares });
             }
         };
         for [a, b] in edges.edges.iter().map(|edge| edge.ends) {
             keep(a, b, rest(a, b), STRETCH);
         }
-        for &[a, b, c, d] in &self.fitted.quads {
+        for &[a, b, c, d] in &self.fitted.mesh.quads {
             keep(a, c, rest(a, c), SHEAR);
             keep(b, d, rest(b, d), SHEAR);
         }
         let straight = |vertex: u32, [a, b]: [u32; 2]| (rest(a, vertex) + rest(vertex, b)) * FLATNESS;
-        for (vertex, ends) in lines(&self.fitted.quads, neighbors) {
+        for (vertex, ends) in lines(&self.fitted.mesh.quads, neighbors) {
             keep(ends[0], ends[1], straight(vertex, ends), BEND);
         }
         for (vertex, ends) in border_lines(edges, self.rest.len()) {
             keep(ends[0], ends[1], straight(vertex, ends), HEM);
         }
-        constraints
+        interleaved(&constraints)
     }
 }
 
 impl DistanceConstraint {
     /// Moves the ends towards the rest length, each by its share of their mobility.
-    fn project(&self, positions: &mut [Vec3A], mobility: &[f32]) {
+    fn project(&self, positions: &mut [Vec3A]) {
         let [a, b] = self.ends.map(|end| end as usize);
         let way = positions[b] - positions[a];
         let distance = way.length();
         if distance > 1e-9 {
-            let share = (distance - self.rest_length_m) / (distance * (mobility[a] + mobility[b])) * self.stiffness;
-            positions[a] += way * (share * mobility[a]);
-            positions[b] -= way * (share * mobility[b]);
+            let excess = way * (1.0 - self.rest_length_m / distance);
+            positions[a] += excess * self.shares[0];
+            positions[b] -= excess * self.shares[1];
         }
     }
+}
+
+/// Returns items in an order in which those that were neighbours lie [`APART`] from each other: constraints in a row then
+/// have no vertex in common, and the processor works on several at a time.
+fn interleaved<T: Copy>(items: &[T]) -> Vec<T> {
+    let rows = items.len().div_ceil(APART).max(1);
+    (0..rows).flat_map(|row| items.iter().skip(row).step_by(rows).copied()).collect()
 }
 
 /// Returns the vertices at the other ends of each vertex's edges.
@@ -201,6 +214,7 @@ fn walk_to_nearest(mesh: &[Vec3A], neighbors: &[Vec<u32>], start: u32, position:
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::figures::subdivide::QuadMesh;
     use glam::Vec2;
 
     /// Squares along each edge of a sheet, and its width, metres.
@@ -208,7 +222,7 @@ mod tests {
     const WIDTH_M: f32 = 0.3;
 
     /// A level sheet whose outside is above, or below, held at two of its edges.
-    fn sheet(is_upright: bool) -> (QuadMesh, Vec<f32>) {
+    fn sheet(is_upright: bool) -> (Surface, Vec<f32>) {
         let side = SQUARES + 1;
         let at = |v: u32| Vec2::new((v % side) as f32, (v / side) as f32) / SQUARES as f32;
         let corners = |v: u32| [v, v + side, v + side + 1, v + 1];
@@ -220,14 +234,15 @@ mod tests {
             ..QuadMesh::default()
         };
         let mobility = (0..side * side).map(|v| f32::from(at(v).x > 0.0 && at(v).x < 1.0)).collect();
-        (mesh, mobility)
+        (Surface::new(mesh), mobility)
     }
 
     /// A sheet of a length (1 + e) L between two bars at a distance L hangs in a shallow arc of the depth L sqrt(3 e / 8).
     #[test]
     fn a_sheet_between_bars_hangs_as_deep_as_its_ease_allows() {
-        let (mesh, mobility) = sheet(false);
-        let draped = Cloth { fitted: &mesh, rest: &mesh.positions, mobility: &mobility, support_m: -1.0 }.draped();
+        let (sheet, mobility) = sheet(false);
+        let draped =
+            Cloth { fitted: &sheet, rest: &sheet.mesh.positions, mobility: &mobility, support_m: -1.0 }.draped();
         // The edges across the bars stretch by less than 4 % under their weight
         let (middle, squares) = (draped.len() / 2, SQUARES as usize);
         let line = &draped[middle - squares / 2..=middle + squares / 2];
@@ -241,17 +256,17 @@ mod tests {
 
     #[test]
     fn cloth_that_lies_on_a_body_stays_on_it() {
-        let (mesh, mobility) = sheet(true);
-        let draped = Cloth { fitted: &mesh, rest: &mesh.positions, mobility: &mobility, support_m: -1.0 }.draped();
+        let (sheet, mobility) = sheet(true);
+        let draped =
+            Cloth { fitted: &sheet, rest: &sheet.mesh.positions, mobility: &mobility, support_m: -1.0 }.draped();
         assert!(draped.iter().all(|p| p.y > -SINK_M - 1e-4), "{draped:?}");
-        let held = draped.iter().zip(&mesh.positions).zip(&mobility).filter(|(_, m)| **m == 0.0);
+        let held = draped.iter().zip(&sheet.mesh.positions).zip(&mobility).filter(|(_, m)| **m == 0.0);
         assert!(held.into_iter().all(|((p, start), _)| p == start));
     }
 
     #[test]
     fn a_line_through_a_vertex_joins_the_ends_of_two_edges() {
-        let (mesh, _) = sheet(true);
-        let edges = Edges::new(&mesh);
+        let (Surface { mesh, edges }, _) = sheet(true);
         let lines = lines(&mesh.quads, &neighbors(&edges, mesh.positions.len()));
         assert_eq!(lines.len() as u32, 2 * (SQUARES - 1) * (SQUARES - 1), "two at each inner vertex");
         for (vertex, [a, b]) in lines {

@@ -6,7 +6,7 @@ use super::patch::Patch;
 use super::posed_body::PosedBody;
 use super::regions::{Clothes, Edges, Garment};
 use super::skin_colors::NO_SKIN;
-use super::subdivide::QuadMesh;
+use super::subdivide::{QuadMesh, Surface};
 use crate::scene::{Bottom, Figure, Top};
 use glam::Vec3;
 use rayon::prelude::*;
@@ -18,23 +18,24 @@ const STRAP_M: f32 = 0.002;
 const FREE_M: f32 = 0.04;
 
 /// Returns the garments of a figure in its pose, subdivided once, with the part of each.
-pub fn dress(data: &BodyData, figure: &Figure, body: &PosedBody, part: impl Fn(Garment) -> u8 + Sync) -> QuadMesh {
+pub fn dress(data: &BodyData, figure: &Figure, body: &PosedBody, part: impl Fn(Garment) -> u8 + Sync) -> Surface {
     let worn = |garment: &Garment| {
-        let fitted = |positions| fitted(data, figure, body, *garment, positions).subdivided();
-        let mut mesh = fitted(&body.positions);
+        let fitted = |positions| fitted(data, figure, body, *garment, positions);
+        let coarse = Surface::new(fitted(&body.positions));
+        let mut surface = coarse.subdivided();
         if *garment != Garment::Shoe {
-            let rest = fitted(&body.rest);
-            let mobility: Vec<f32> = rest.values.iter().map(|value| value.x).collect();
+            let rest = &coarse.subdivided_positions(&fitted(&body.rest).positions);
+            let mobility: Vec<f32> = surface.mesh.values.iter().map(|value| value.x).collect();
             let support_m = figure.pose.seat_m.unwrap_or(0.0);
-            mesh.positions = Cloth { fitted: &mesh, rest: &rest.positions, mobility: &mobility, support_m }.draped();
+            surface.mesh.positions = Cloth { fitted: &surface, rest, mobility: &mobility, support_m }.draped();
         }
-        mesh.parts.fill(part(*garment));
-        mesh.values.fill(NO_SKIN);
-        mesh
+        surface.mesh.parts.fill(part(*garment));
+        surface.mesh.values.fill(NO_SKIN);
+        surface
     };
-    let mut clothes = QuadMesh::default();
-    for mesh in [Garment::Top, Garment::Bottom, Garment::Shoe].par_iter().map(worn).collect::<Vec<_>>() {
-        clothes.append(&mesh);
+    let mut clothes = Surface::new(QuadMesh::default());
+    for surface in [Garment::Top, Garment::Bottom, Garment::Shoe].par_iter().map(worn).collect::<Vec<_>>() {
+        clothes.append(&surface);
     }
     clothes
 }
@@ -81,8 +82,9 @@ mod tests {
             let figure = ready.figure();
             let body = PosedBody::new(data, &figure);
             for garment in [Garment::Top, Garment::Bottom] {
-                let fitted = fitted(data, &figure, &body, garment, &body.positions).subdivided();
-                let draped = dress(data, &figure, &body, |other| u8::from(other == garment));
+                let fitted = fitted(data, &figure, &body, garment, &body.positions);
+                let fitted = Surface::new(fitted).subdivided().mesh;
+                let draped = dress(data, &figure, &body, |other| u8::from(other == garment)).mesh;
                 let quads =
                     draped.quads.iter().zip(&draped.parts).filter(|(_, part)| **part == 1).map(|(quad, _)| *quad);
                 let first = quads.clone().flatten().min().unwrap() as usize;

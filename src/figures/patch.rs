@@ -23,14 +23,18 @@ impl Patch {
     pub fn new(data: &BodyData, group: &str, positions: &[Vec3], wanted: &dyn Fn(&[u16; 4]) -> bool) -> Patch {
         let mut patch = Patch::default();
         let Some(group) = data.group(group) else { return patch };
-        let mut vertices: HashMap<u16, u32> = HashMap::new();
+        // The vertex of the patch for each of the body data
+        const NONE: u32 = u32::MAX;
+        let mut vertices = vec![NONE; data.positions.len()];
         for (quad, uvs) in group.quads.iter().zip(&group.uvs).filter(|(quad, _)| wanted(quad)) {
             let corners = quad.map(|v| {
-                *vertices.entry(v).or_insert_with(|| {
+                let vertex = &mut vertices[usize::from(v)];
+                if *vertex == NONE {
+                    *vertex = patch.sources.len() as u32;
                     patch.positions.push(positions[usize::from(v)]);
                     patch.sources.push(v);
-                    patch.sources.len() as u32 - 1
-                })
+                }
+                *vertex
             });
             patch.quads.push(corners);
             patch.uvs.push(uvs.map(|uv| data.uvs[usize::from(uv)]));

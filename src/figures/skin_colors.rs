@@ -7,7 +7,7 @@ use super::body_data::BodyData;
 use super::hair::{beard_density, brow_density, scalp_density};
 use super::random::Random;
 use crate::scene::{Beard, Figure, HairStyle};
-use glam::Vec3;
+use glam::{Vec3, Vec3A};
 use rayon::prelude::*;
 use std::sync::LazyLock;
 
@@ -148,7 +148,8 @@ fn mottled(place: Vec3, seed: u32) -> Vec3 {
 
 /// Returns value noise at a point: random values of -1 to 1 at points of whole coordinates, blended smoothly between.
 fn noise(point: Vec3, seed: u32) -> f32 {
-    let cell = point.floor();
+    // Rounded by one instruction, as Vec3 is not
+    let cell = Vec3::from(Vec3A::from(point).floor());
     let t = point - cell;
     let t = t * t * (3.0 - 2.0 * t);
     let cell = cell.as_ivec3();

@@ -47,79 +47,120 @@ impl QuadMesh {
         self.values.extend(&other.values);
     }
 
-    /// Returns the mesh with every quad split into four, smoothed.
-    pub fn subdivided(&self) -> QuadMesh {
-        let edges = Edges::new(self);
-        let (vertex_count, edge_count) = (self.positions.len() as u32, edges.edges.len() as u32);
-        // New points: of quads, of edges, and of the old vertices
-        let middle = |quad: &[u32; 4]| quad.iter().map(|&v| self.positions[v as usize]).sum::<Vec3>() / 4.0;
-        let quad_points: Vec<Vec3> = self.quads.par_iter().map(middle).collect();
-        let edge_points: Vec<Vec3> = edges.edges.par_iter().map(|edge| self.edge_point(edge, &quad_points)).collect();
-        let mut positions = self.vertex_points(&edges, &quad_points);
-        positions.extend(edge_points);
-        positions.extend(quad_points);
-        let values = self.split_values(&edges);
+    /// Returns the area-weighted unit normal at each vertex.
+    pub fn normals(&self) -> Vec<Vec3> {
+        let mut normals = vec![Vec3::ZERO; self.positions.len()];
+        for quad in &self.quads {
+            let [a, b, c, d] = quad.map(|v| self.positions[v as usize]);
+            let normal = (c - a).cross(d - b);
+            for &vertex in quad {
+                normals[vertex as usize] += normal;
+            }
+        }
+        normals.into_par_iter().map(|n| n.normalize_or(Vec3::Y)).collect()
+    }
+}
+
+/// A mesh with its edges: those of a subdivided mesh follow from those of the mesh, without a search.
+#[derive(Clone, Debug)]
+pub struct Surface {
+    /// The mesh.
+    pub mesh: QuadMesh,
+    /// Its edges.
+    pub edges: Edges,
+}
+
+impl Surface {
+    /// Finds the edges of a mesh.
+    pub fn new(mesh: QuadMesh) -> Surface {
+        let edges = Edges::new(&mesh);
+        Surface { mesh, edges }
+    }
+
+    /// Appends another surface.
+    pub fn append(&mut self, other: &Surface) {
+        self.edges.append(&other.edges, self.mesh.positions.len() as u32);
+        self.mesh.append(&other.mesh);
+    }
+
+    /// Returns the surface with every quad split into four, smoothed.
+    pub fn subdivided(&self) -> Surface {
+        let Surface { mesh, edges } = self;
+        let (vertex_count, edge_count) = (mesh.positions.len() as u32, edges.edges.len() as u32);
         // Four quads for each, one at each corner
         let split = |(index, quad): (usize, &[u32; 4])| {
             let side = |k: usize| vertex_count + edges.of_quad[index][k];
             let centre = vertex_count + edge_count + index as u32;
             std::array::from_fn::<_, 4, _>(|k| [quad[k], side(k), centre, side((k + 3) % 4)])
         };
-        let quads = self.quads.par_iter().enumerate().flat_map_iter(split).collect();
+        let quads = mesh.quads.par_iter().enumerate().flat_map_iter(split).collect();
         let split_uv = |corners: &[Vec2; 4]| {
             let corners = *corners;
             let side = move |k: usize| (corners[k] + corners[(k + 1) % 4]) / 2.0;
             let centre = corners.into_iter().sum::<Vec2>() / 4.0;
             std::array::from_fn::<_, 4, _>(|k| [corners[k], side(k), centre, side((k + 3) % 4)])
         };
-        QuadMesh {
-            positions,
+        let subdivided = QuadMesh {
+            positions: self.subdivided_positions(&mesh.positions),
             quads,
-            uvs: self.uvs.par_iter().flat_map_iter(split_uv).collect(),
-            parts: self.parts.iter().flat_map(|&part| [part; 4]).collect(),
-            values,
-        }
+            uvs: mesh.uvs.par_iter().flat_map_iter(split_uv).collect(),
+            parts: mesh.parts.iter().flat_map(|&part| [part; 4]).collect(),
+            values: self.split_values(),
+        };
+        Surface { mesh: subdivided, edges: edges.subdivided(mesh) }
+    }
+
+    /// Returns the positions of the subdivided surface's vertices if this one's are at `positions`: those of the old
+    /// vertices, of edges and of quads.
+    pub fn subdivided_positions(&self, positions: &[Vec3]) -> Vec<Vec3> {
+        let quad_points = self.quad_points(positions);
+        let edge_point = |edge: &Edge| {
+            let [a, b] = edge.ends.map(|v| positions[v as usize]);
+            match edge.quads {
+                [_, NONE] => (a + b) / 2.0,
+                [left, right] => (a + b + quad_points[left as usize] + quad_points[right as usize]) / 4.0,
+            }
+        };
+        let rings = self.rings(positions, &quad_points);
+        let old = positions.par_iter().zip(rings).map(|(position, ring)| ring.smoothed(*position));
+        let edge_points = self.edges.edges.par_iter().map(edge_point);
+        let mut subdivided: Vec<Vec3> = old.chain(edge_points).collect();
+        subdivided.extend(quad_points);
+        subdivided
+    }
+
+    /// Returns the middle of each quad.
+    fn quad_points(&self, positions: &[Vec3]) -> Vec<Vec3> {
+        let middle = |quad: &[u32; 4]| quad.iter().map(|&v| positions[v as usize]).sum::<Vec3>() / 4.0;
+        self.mesh.quads.par_iter().map(middle).collect()
     }
 
     /// Returns the values of the old vertices, and of the middles of edges and quads.
-    fn split_values(&self, edges: &Edges) -> Vec<Vec3> {
-        if self.values.is_empty() {
+    fn split_values(&self) -> Vec<Vec3> {
+        let values = &self.mesh.values;
+        if values.is_empty() {
             return Vec::new();
         }
         let mean =
-            |vertices: &[u32]| vertices.iter().map(|&v| self.values[v as usize]).sum::<Vec3>() / vertices.len() as f32;
-        let of_edges = edges.edges.iter().map(|edge| mean(&edge.ends));
-        self.values.iter().copied().chain(of_edges).chain(self.quads.iter().map(|quad| mean(quad))).collect()
-    }
-
-    fn edge_point(&self, edge: &Edge, quad_points: &[Vec3]) -> Vec3 {
-        let [a, b] = edge.ends.map(|v| self.positions[v as usize]);
-        match edge.quads {
-            [_, NONE] => (a + b) / 2.0,
-            [left, right] => (a + b + quad_points[left as usize] + quad_points[right as usize]) / 4.0,
-        }
-    }
-
-    /// Returns the smoothed positions of the old vertices.
-    fn vertex_points(&self, edges: &Edges, quad_points: &[Vec3]) -> Vec<Vec3> {
-        let rings = self.rings(edges, quad_points);
-        self.positions.par_iter().zip(rings).map(|(position, ring)| ring.smoothed(*position)).collect()
+            |vertices: &[u32]| vertices.iter().map(|&v| values[v as usize]).sum::<Vec3>() / vertices.len() as f32;
+        let of_edges = self.edges.edges.iter().map(|edge| mean(&edge.ends));
+        values.iter().copied().chain(of_edges).chain(self.mesh.quads.iter().map(|quad| mean(quad))).collect()
     }
 
     /// Returns what lies round each vertex.
-    fn rings(&self, edges: &Edges, quad_points: &[Vec3]) -> Vec<Ring> {
-        let mut rings = vec![Ring::default(); self.positions.len()];
-        for (quad, point) in self.quads.iter().zip(quad_points) {
+    fn rings(&self, positions: &[Vec3], quad_points: &[Vec3]) -> Vec<Ring> {
+        let mut rings = vec![Ring::default(); positions.len()];
+        for (quad, point) in self.mesh.quads.iter().zip(quad_points) {
             for &vertex in quad {
                 rings[vertex as usize].quads += *point;
                 rings[vertex as usize].quad_count += 1.0;
             }
         }
-        for edge in &edges.edges {
+        for edge in &self.edges.edges {
             for [vertex, other] in [edge.ends, [edge.ends[1], edge.ends[0]]] {
-                let other = self.positions[other as usize];
+                let other = positions[other as usize];
                 let ring = &mut rings[vertex as usize];
-                ring.edges += (self.positions[vertex as usize] + other) / 2.0;
+                ring.edges += (positions[vertex as usize] + other) / 2.0;
                 ring.edge_count += 1.0;
                 if edge.is_border() {
                     ring.border += other;
@@ -132,23 +173,9 @@ impl QuadMesh {
 
     /// Moves every vertex to where further subdivisions would take it.
     pub fn move_to_limit(&mut self) {
-        let edges = Edges::new(self);
-        let middle = |quad: &[u32; 4]| quad.iter().map(|&v| self.positions[v as usize]).sum::<Vec3>() / 4.0;
-        let rings = self.rings(&edges, &self.quads.par_iter().map(middle).collect::<Vec<_>>());
-        self.positions = self.positions.par_iter().zip(rings).map(|(position, ring)| ring.limit(*position)).collect();
-    }
-
-    /// Returns the area-weighted unit normal at each vertex.
-    pub fn normals(&self) -> Vec<Vec3> {
-        let mut normals = vec![Vec3::ZERO; self.positions.len()];
-        for quad in &self.quads {
-            let [a, b, c, d] = quad.map(|v| self.positions[v as usize]);
-            let normal = (c - a).cross(d - b);
-            for &vertex in quad {
-                normals[vertex as usize] += normal;
-            }
-        }
-        normals.into_par_iter().map(|n| n.normalize_or(Vec3::Y)).collect()
+        let rings = self.rings(&self.mesh.positions, &self.quad_points(&self.mesh.positions));
+        let limit = |(position, ring): (&Vec3, Ring)| ring.limit(*position);
+        self.mesh.positions = self.mesh.positions.par_iter().zip(rings).map(limit).collect();
     }
 }
 
@@ -229,34 +256,84 @@ impl Edges {
         }
         Edges { edges, of_quad }
     }
+    /// Returns the edges of the subdivided mesh: two halves of each edge, and four edges in each quad.
+    fn subdivided(&self, mesh: &QuadMesh) -> Edges {
+        let (vertex_count, edge_count) = (mesh.positions.len() as u32, self.edges.len() as u32);
+        let corner_of = |quad: u32, vertex: u32| mesh.quads[quad as usize].iter().zip(0..).find(|(v, _)| **v == vertex);
+        // The quad at a corner of a quad
+        let at_corner =
+            |quad: u32, vertex: u32| corner_of(quad, vertex).map_or(NONE, |(_, corner): (_, u32)| quad * 4 + corner);
+        let halves = |(index, edge): (usize, &Edge)| {
+            let (middle, edge) = (vertex_count + index as u32, *edge);
+            edge.ends.map(|end| {
+                let quads = edge.quads.map(|quad| if quad == NONE { NONE } else { at_corner(quad, end) });
+                Edge { ends: [end, middle], quads }
+            })
+        };
+        // From the middle of each side of a quad to the quad's middle
+        let spokes = |(index, sides): (usize, &[u32; 4])| {
+            let (quad, sides) = (index as u32, *sides);
+            let spoke = move |k: u32| Edge {
+                ends: [vertex_count + sides[k as usize], vertex_count + edge_count + quad],
+                quads: [quad * 4 + k, quad * 4 + (k + 1) % 4],
+            };
+            [0, 1, 2, 3].map(spoke)
+        };
+        let mut edges: Vec<Edge> = self.edges.par_iter().enumerate().flat_map_iter(halves).collect();
+        edges.par_extend(self.of_quad.par_iter().enumerate().flat_map_iter(spokes));
+        let of_quad = |(index, sides): (usize, &[u32; 4])| {
+            let (quad, sides) = (index as u32, *sides);
+            // The half of a side that begins at a corner
+            let half = |side: u32, vertex: u32| side * 2 + u32::from(self.edges[side as usize].ends[0] != vertex);
+            let spoke = |k: u32| edge_count * 2 + quad * 4 + k;
+            std::array::from_fn::<_, 4, _>(|k| {
+                let (corner, before) = (mesh.quads[index][k], (k + 3) % 4);
+                [half(sides[k], corner), spoke(k as u32), spoke(before as u32), half(sides[before], corner)]
+            })
+        };
+        let of_quad = self.of_quad.par_iter().enumerate().flat_map_iter(of_quad).collect();
+        Edges { edges, of_quad }
+    }
+
+    /// Appends the edges of a mesh whose vertices begin at `first_vertex`.
+    fn append(&mut self, other: &Edges, first_vertex: u32) {
+        let (first_edge, first_quad) = (self.edges.len() as u32, self.of_quad.len() as u32);
+        let moved = |edge: &Edge| Edge {
+            ends: edge.ends.map(|vertex| vertex + first_vertex),
+            quads: edge.quads.map(|quad| if quad == NONE { NONE } else { quad + first_quad }),
+        };
+        self.edges.extend(other.edges.iter().map(moved));
+        self.of_quad.extend(other.of_quad.iter().map(|sides| sides.map(|edge| edge + first_edge)));
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    fn cube() -> QuadMesh {
+    fn cube() -> Surface {
         let corner = |i: usize| Vec3::new((i & 1) as f32, (i >> 1 & 1) as f32, (i >> 2) as f32) * 2.0 - Vec3::ONE;
         let quads = vec![[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
         let count = quads.len();
-        QuadMesh {
+        Surface::new(QuadMesh {
             positions: (0..8).map(corner).collect(),
             quads,
             uvs: vec![[Vec2::ZERO, Vec2::X, Vec2::ONE, Vec2::Y]; count],
             parts: vec![0; count],
             ..QuadMesh::default()
-        }
+        })
     }
 
     /// The first step of a cube of edge 2: quad points at 1, edge points at (1 + 1/2)/2 twice, corners at 5/9.
     #[test]
     fn a_cube_follows_the_rules_and_tends_to_a_round_closed_body() {
-        let once = cube().subdivided();
+        let subdivided = cube().subdivided();
+        let once = &subdivided.mesh;
         assert_eq!((once.positions.len(), once.quads.len()), (8 + 12 + 6, 24));
         assert!(once.positions[7].distance(Vec3::splat(5.0 / 9.0)) < 1e-6, "{}", once.positions[7]);
         assert!(once.positions[8..20].iter().all(|p| (p.length() - 0.75 * 2_f32.sqrt()).abs() < 1e-6));
         assert!(once.positions[20..].iter().all(|p| (p.length() - 1.0).abs() < 1e-6));
-        let thrice = once.subdivided().subdivided();
+        let thrice = subdivided.subdivided().subdivided().mesh;
         let radii: Vec<f32> = thrice.positions.iter().map(|p| p.length()).collect();
         let (low, high) = radii.iter().fold((9.0_f32, 0.0_f32), |(l, h), r| (l.min(*r), h.max(*r)));
         assert!(high / low < 1.2, "{low} {high}");
@@ -269,7 +346,7 @@ mod tests {
         let mut limit = cube().subdivided();
         let many = limit.subdivided().subdivided().subdivided().subdivided().subdivided();
         limit.move_to_limit();
-        for (limit, many) in limit.positions.iter().zip(&many.positions) {
+        for (limit, many) in limit.mesh.positions.iter().zip(&many.mesh.positions) {
             assert!(limit.distance(*many) < 1e-3, "{limit} {many}");
         }
     }
@@ -286,9 +363,46 @@ mod tests {
             parts: vec![0, 1],
             ..QuadMesh::default()
         };
-        let once = square.subdivided();
+        let once = Surface::new(square).subdivided().mesh;
         assert_eq!(once.positions[1], Vec3::new(1.0, 0.0, 0.0), "on a straight border a vertex stays");
         assert_eq!(once.positions[0], Vec3::new(1.0 / 8.0, 1.0 / 8.0, 0.0));
         assert_eq!(once.parts, [0, 0, 0, 0, 1, 1, 1, 1]);
+    }
+    /// The edges as sets of vertices, with the vertices of the quads beside each.
+    fn described(surface: &Surface) -> Vec<([u32; 2], Vec<[u32; 4]>)> {
+        let sorted = |mut ends: [u32; 2]| {
+            ends.sort_unstable();
+            ends
+        };
+        let beside = |edge: &Edge| {
+            let mut quads: Vec<[u32; 4]> =
+                edge.quads.into_iter().filter(|q| *q != NONE).map(|q| surface.mesh.quads[q as usize]).collect();
+            quads.sort_unstable();
+            quads
+        };
+        let mut edges: Vec<_> = surface.edges.edges.iter().map(|edge| (sorted(edge.ends), beside(edge))).collect();
+        edges.sort_unstable();
+        edges
+    }
+
+    #[test]
+    fn derived_edges_are_those_that_a_search_finds() {
+        let mut both = cube();
+        both.append(&Surface::new(QuadMesh {
+            positions: (0..6).map(|i| Vec3::new((i % 3) as f32, (i / 3) as f32, 0.0)).collect(),
+            quads: vec![[0, 1, 4, 3], [1, 2, 5, 4]],
+            uvs: vec![[Vec2::ZERO; 4]; 2],
+            parts: vec![0; 2],
+            ..QuadMesh::default()
+        }));
+        for surface in [both.clone(), both.subdivided(), both.subdivided().subdivided()] {
+            assert_eq!(described(&surface), described(&Surface::new(surface.mesh.clone())));
+            for (quad, sides) in surface.mesh.quads.iter().zip(&surface.edges.of_quad) {
+                for k in 0..4 {
+                    let ends = surface.edges.edges[sides[k] as usize].ends;
+                    assert!(ends.contains(&quad[k]) && ends.contains(&quad[(k + 1) % 4]), "{quad:?} {ends:?}");
+                }
+            }
+        }
     }
 }

@@ -1,7 +1,7 @@
-//! Sine and cosine for sampling warps, by polynomials that the compiler can inline. Unlike the standard library, they
-//! need no range reduction for large angles.
+//! Sine, cosine and arc tangent by polynomials that the compiler can inline. Unlike the standard library's, they need no
+//! range reduction for large angles, and no branches.
 
-use std::f32::consts::FRAC_PI_2;
+use std::f32::consts::{FRAC_PI_2, PI};
 
 /// Returns sine and cosine of an angle in -pi/4..pi/4, within 1.2e-7 (the minimax polynomials of Moshier's Cephes
 /// library).
@@ -23,10 +23,39 @@ pub fn sin_cos_turn(u: f32) -> (f32, f32) {
     if quarter & 2 == 0 { (sin, cos) } else { (-sin, -cos) }
 }
 
+/// Returns the angle of a point from the X axis, -pi to pi, within 3e-7 (Hastings's polynomial, Abramowitz and Stegun
+/// 4.4.49); relative to the angle near 0. 0 for the origin.
+#[inline(always)]
+pub fn atan2(y: f32, x: f32) -> f32 {
+    let (along, across) = (x.abs(), y.abs());
+    let (low, high) = if across > along { (along, across) } else { (across, along) };
+    let t = low / high.max(f32::MIN_POSITIVE);
+    let t2 = t * t;
+    let high_terms = -0.075_289_64 + t2 * (0.042_909_614 + t2 * (-0.016_165_737 + t2 * 0.002_866_225_7));
+    let low_terms = -0.333_331_45 + t2 * (0.199_935_51 + t2 * (-0.142_088_99 + t2 * (0.106_562_64 + t2 * high_terms)));
+    let eighth = t + t * t2 * low_terms;
+    let quarter = if across > along { FRAC_PI_2 - eighth } else { eighth };
+    let half = if x < 0.0 { PI - quarter } else { quarter };
+    half.copysign(y)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
     use std::f64::consts::TAU;
+
+    #[test]
+    fn the_arc_tangent_is_within_its_error_bound() {
+        for i in 0..1_000_000 {
+            let (sin, cos) = (f64::from(i) / 1e6 * TAU - TAU / 2.0).sin_cos();
+            let (y, x) = ((sin * 3.7) as f32, (cos * 3.7) as f32);
+            let exact = f64::from(y).atan2(f64::from(x));
+            let error = (f64::from(atan2(y, x)) - exact).abs();
+            assert!(error < 3e-7 && error < 1e-6 * exact.abs() + 1e-12, "{y} {x}: {error}");
+        }
+        assert_eq!((atan2(0.0, 0.0), atan2(1.0, 0.0), atan2(0.0, -1.0)), (0.0, FRAC_PI_2, PI));
+        assert_eq!((atan2(1e-30, 1.0), atan2(f32::MAX, f32::MAX)), (1e-30, FRAC_PI_2 / 2.0));
+    }
 
     #[test]
     fn sine_and_cosine_are_within_their_error_bound() {

@@ -13,7 +13,7 @@ mod safe;
 pub mod simd;
 pub mod warp;
 
-pub use angle::{sin_cos_eighth, sin_cos_turn};
+pub use angle::{atan2, sin_cos_eighth, sin_cos_turn};
 pub use bounded_least_squares::{BoundedUnknown, LinearEquation, bounded_least_squares};
 pub use frame::{look_along, look_at, orthonormal_basis};
 pub use mean::mean;

@@ -5,6 +5,8 @@ use super::obstacles::{Obstacles, ShoulderSide};
 use super::roots::{Root, scatter};
 use super::style::{Comb, Style, scalp_density, sideburn_density};
 use crate::figures::random::Random;
+use crate::math::simd::LANES;
+use crate::math::sin_cos_turn;
 use crate::scene::{Figure, StrandPoint, Strands};
 use glam::{Quat, Vec3};
 use rayon::prelude::*;
@@ -53,9 +55,11 @@ pub fn grow_head(body: &HairBody, figure: &Figure, style: &Style, strands: &mut 
         points: field.grow(root, Random::new(figure.seed, 100 + index as u32)),
     };
     let guides: Vec<Guide> = roots.par_iter().step_by(every).enumerate().map(guide).collect();
+    let near = GuideRoots::new(&guides);
+    let steps = steps_of(style);
     let strand = |(index, root): (usize, &Root)| {
         let random = Random::new(figure.seed, 100_000 + index as u32);
-        let points = follow(root, &guides, &field, random);
+        let points = follow(root, (&guides, &near), &steps, &field, random);
         points.into_iter().map(|(p, radius_m)| (body.head.transform_point3(p), radius_m)).collect::<Vec<_>>()
     };
     let grown: Vec<Vec<(Vec3, f32)>> = roots.par_iter().enumerate().map(strand).collect();
@@ -231,26 +235,80 @@ impl CombField<'_> {
     }
 }
 
-/// Returns the three guides whose roots are nearest to a position: squared distances and indices, the nearest first. With fewer guides
-/// the rest are infinitely far.
-fn nearest_guides(position: Vec3, guides: &[Guide]) -> [(f32, usize); 3] {
-    let mut near = [(f32::INFINITY, 0); 3];
-    for (index, guide) in guides.iter().enumerate() {
-        let distance = guide.root.position.distance_squared(position);
-        if distance < near[2].0 {
-            near[2] = (distance, index);
-            near.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
-        }
+/// The roots of guides, eight to a block: X, Y and Z of each, infinitely far where there are fewer.
+struct GuideRoots(Vec<[[f32; LANES]; 3]>);
+
+impl GuideRoots {
+    fn new(guides: &[Guide]) -> GuideRoots {
+        let block = |guides: &[Guide]| {
+            let root = |i: usize| guides.get(i).map_or(Vec3::INFINITY, |guide| guide.root.position);
+            [0, 1, 2].map(|axis| std::array::from_fn(|i| root(i)[axis]))
+        };
+        GuideRoots(guides.chunks(LANES).map(block).collect())
     }
-    near
+
+    /// Returns the three guides nearest to a position: squared distances and indices, the nearest first. With fewer
+    /// guides the rest are infinitely far.
+    fn nearest(&self, position: Vec3) -> [(f32, usize); 3] {
+        let mut near = [(f32::INFINITY, 0); 3];
+        for (block, [x, y, z]) in self.0.iter().enumerate() {
+            let distance = |i: usize| Vec3::new(x[i], y[i], z[i]).distance_squared(position);
+            let distances: [f32; LANES] = std::array::from_fn(distance);
+            // Few blocks have a guide that is nearer than those before
+            let least = distances.iter().fold(f32::INFINITY, |least, d| if *d < least { *d } else { least });
+            if least >= near[2].0 {
+                continue;
+            }
+            for (lane, &distance) in distances.iter().enumerate() {
+                if distance < near[2].0 {
+                    near[2] = (distance, block * LANES + lane);
+                    near.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
+                }
+            }
+        }
+        near
+    }
+}
+
+/// A point on the way of all strands of a style.
+#[derive(Clone, Copy, Debug)]
+struct StrandStep {
+    /// Part of the length, from the root.
+    along: f32,
+    /// How much strands are drawn to the first guide, 0 to 1.
+    gather: f32,
+}
+
+/// Returns as many points as length and curls of a style need.
+fn steps_of(style: &Style) -> Vec<StrandStep> {
+    let length = style.length_m[0].max(style.length_m[1]);
+    let curls = length * style.turns_per_m * 7.0;
+    let segments = (length / 0.025).max(curls).ceil().clamp(4.0, 32.0) as usize;
+    // Close to the skin, which is convex, points are denser: a chord would lead through the skin
+    let bunching = if curls > length / 0.025 { 1.0 } else { 1.5 };
+    let step = |k: usize| {
+        let along = (k as f32 / segments as f32).powf(bunching);
+        let gather = match style.comb {
+            Comb::ToTie => (along / TIED_AT).min(1.0),
+            _ => style.clumping * along.powf(0.7),
+        };
+        StrandStep { along, gather }
+    };
+    (0..=segments).map(step).collect()
 }
 
 /// Returns the points of a strand that follows the guides near its root, with its radius there.
-fn follow(root: &Root, guides: &[Guide], field: &CombField, mut random: Random) -> Vec<(Vec3, f32)> {
+fn follow(
+    root: &Root,
+    (guides, guide_roots): (&[Guide], &GuideRoots),
+    steps: &[StrandStep],
+    field: &CombField,
+    mut random: Random,
+) -> Vec<(Vec3, f32)> {
     let style = field.style;
     // Beside a parting some strands cross to the other side, and hide the skin between both
     let crossing = CROSSING_M * nearness_to_parting(style, root.position.x) * random.bell();
-    let near = nearest_guides(root.position + Vec3::X * crossing, guides);
+    let near = guide_roots.nearest(root.position + Vec3::X * crossing);
     // Guides on the other side of a parting, or of the shoulders, are no neighbours: they go another way.
     let first = &guides[near[0].1];
     let reach = |guide: &Guide, step: usize| guide.points[step] - guide.root.position;
@@ -265,33 +323,24 @@ fn follow(root: &Root, guides: &[Guide], field: &CombField, mut random: Random) 
         .collect();
     let sum: f32 = weights.iter().map(|(w, _)| w).sum();
     let shorter = 1.0 - 0.25 * random.unit() * random.unit();
-    let phase = TAU * random.unit() * (1.0 - style.clumping);
+    let phase = random.unit() * (1.0 - style.clumping);
     let spread = Vec3::new(random.bell(), random.bell(), random.bell()) * style.frizz * 0.05 * style.length_m[0];
     let offset = root.position - first.root.position;
-    // As many segments as length and curls need
-    let length = style.length_m[0].max(style.length_m[1]);
-    let curls = length * style.turns_per_m * 7.0;
-    let segments = (length / 0.025).max(curls).ceil().clamp(4.0, 32.0) as usize;
-    // Close to the skin, which is convex, points are denser: a chord would lead through the skin
-    let bunching = if curls > length / 0.025 { 1.0 } else { 1.5 };
-    let mut points = Vec::with_capacity(segments + 1);
-    for k in 0..=segments {
-        let along = (k as f32 / segments as f32).powf(bunching);
+    let mut points = Vec::with_capacity(steps.len());
+    for (k, &StrandStep { along, gather }) in steps.iter().enumerate() {
         let at = along * shorter * STEPS as f32;
         let (low, t) = ((at as usize).min(STEPS - 1), at - (at as usize).min(STEPS - 1) as f32);
         // The mean shape of the guides, from this root, drawn towards the first guide
         let shape = |guide: &Guide| guide.points[low].lerp(guide.points[low + 1], t) - guide.root.position;
         let mean = weights.iter().map(|(w, guide)| shape(guide) * *w).sum::<Vec3>() / sum;
-        let gather = match style.comb {
-            Comb::ToTie => (along / TIED_AT).min(1.0),
-            _ => style.clumping * along.powf(0.7),
-        };
         let mut p = root.position + mean.lerp(shape(first), gather) - offset * gather * 0.8 + spread * along;
         if style.curl_m > 0.0 {
             let tangent = (first.points[low + 1] - first.points[low]).normalize_or(Vec3::NEG_Y);
             let length = at / STEPS as f32 * style.length_m[0];
-            let turn = Quat::from_axis_angle(tangent, TAU * style.turns_per_m * length + phase + near[0].1 as f32);
-            p += turn * tangent.any_orthonormal_vector() * style.curl_m * (along * 4.0).min(1.0);
+            let turns = style.turns_per_m * length + phase + near[0].1 as f32 / TAU;
+            let (sin, cos) = sin_cos_turn(turns - turns as u32 as f32);
+            let aside = tangent.any_orthonormal_vector();
+            p += (aside * cos + tangent.cross(aside) * sin) * style.curl_m * (along * 4.0).min(1.0);
         }
         // A guide's shape from another root may lead into the skin, or before the face
         let aside = |p| field.beside_face(p, &first.root);
@@ -309,4 +358,27 @@ fn cut(points: &mut Vec<(Vec3, f32)>, down: Vec3, level_m: f32) {
     let t = (level_m - a.dot(down)) / (b - a).dot(down);
     points.truncate(end);
     points.push((a.lerp(b, t), radius_a + (radius_b - radius_a) * t));
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_nearest_guides_are_those_that_sorting_finds() {
+        let mut random = Random::new(7, 0);
+        let mut place = || Vec3::new(random.unit(), random.unit(), random.unit());
+        for count in [0, 2, 8, 419] {
+            let root = |position| Root { position, normal: Vec3::Y, place: position };
+            let guides: Vec<Guide> = (0..count).map(|_| Guide { root: root(place()), points: vec![] }).collect();
+            let roots = GuideRoots::new(&guides);
+            for position in (0..50).map(|_| place()) {
+                let distance = |guide: &Guide| guide.root.position.distance_squared(position);
+                let mut all: Vec<(f32, usize)> = guides.iter().map(distance).zip(0..).collect();
+                all.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
+                all.resize(all.len().max(3), (f32::INFINITY, 0));
+                assert_eq!(roots.nearest(position), all[..3]);
+            }
+        }
+    }
 }

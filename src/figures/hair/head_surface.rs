@@ -2,7 +2,8 @@
 
 use super::hair_body::HairBody;
 use crate::figures::patch::Patch;
-use crate::figures::subdivide::QuadMesh;
+use crate::figures::subdivide::{QuadMesh, Surface};
+use crate::math::atan2;
 use glam::{Vec2, Vec3};
 use std::f32::consts::{PI, TAU};
 
@@ -18,6 +19,8 @@ pub struct HeadSurface {
     centre: Vec3,
     /// Rows from the top, metres.
     radii: Vec<f32>,
+    /// The largest of them, metres.
+    greatest: f32,
 }
 
 impl HeadSurface {
@@ -32,14 +35,15 @@ impl HeadSurface {
         let wanted = |quad: &[u16; 4]| quad.iter().all(|&v| is_head(v));
         let patch = Patch::new(body.data, "body", body.positions, &wanted);
         let skin = QuadMesh { positions: patch.positions, quads: patch.quads, uvs: patch.uvs, ..QuadMesh::default() };
-        let mut surface = HeadSurface { centre, radii: vec![0.0; ROWS * COLUMNS] };
-        for position in skin.subdivided().subdivided().positions {
+        let mut surface = HeadSurface { centre, radii: vec![0.0; ROWS * COLUMNS], greatest: 0.0 };
+        for position in Surface::new(skin).subdivided().subdivided().mesh.positions {
             let offset = to_head.transform_point3(position) - centre;
             let cell = cell_of(offset).round().as_uvec2();
             let index = (cell.y as usize).min(ROWS - 1) * COLUMNS + cell.x as usize % COLUMNS;
             surface.radii[index] = surface.radii[index].max(offset.length());
         }
         surface.fill_gaps();
+        surface.greatest = surface.radii.iter().copied().fold(0.0, f32::max);
         surface
     }
 
@@ -64,12 +68,11 @@ impl HeadSurface {
     /// Returns the distance of the skin from the middle in the direction of a point, metres.
     fn radius_towards(&self, offset: Vec3) -> f32 {
         let at = cell_of(offset);
-        let (low, t) = (at.floor(), at.fract());
-        let value = |dx: u32, dy: u32| {
-            let (x, y) = (low.x as usize + dx as usize, (low.y.max(0.0) as usize + dy as usize).min(ROWS - 1));
-            self.radii[y * COLUMNS + x % COLUMNS]
-        };
-        let row = |dy: u32| value(0, dy) + (value(1, dy) - value(0, dy)) * t.x;
+        // Both are at least 0: the whole parts are what is before the point
+        let (column, line) = (at.x as usize, at.y as usize);
+        let t = at - Vec2::new(column as f32, line as f32);
+        let value = |dx: usize, dy: usize| self.radii[(line + dy).min(ROWS - 1) * COLUMNS + (column + dx) % COLUMNS];
+        let row = |dy: usize| value(0, dy) + (value(1, dy) - value(0, dy)) * t.x;
         row(0) + (row(1) - row(0)) * t.y
     }
 
@@ -80,6 +83,10 @@ impl HeadSurface {
 
     /// Returns a point moved out to at least this height over the skin, metres.
     pub fn pushed_out(&self, p: Vec3, height: f32) -> Vec3 {
+        // Most of long hair is farther away than any skin
+        if (p - self.centre).length() >= self.greatest + height {
+            return p;
+        }
         let missing = height - self.height(p);
         if missing > 0.0 { p + (p - self.centre).normalize_or(Vec3::Y) * missing } else { p }
     }
@@ -90,9 +97,11 @@ pub fn is_ear(place: Vec3) -> bool {
     place.x.abs() > 0.075 && place.y < 0.03 && (-0.125..-0.055).contains(&place.z)
 }
 
-/// Returns column and row of a direction, of cells whose middles are at whole numbers.
+/// Returns column and row of a direction of any length, of cells whose middles are at whole numbers.
+#[inline(always)]
 fn cell_of(offset: Vec3) -> Vec2 {
-    let direction = offset.normalize_or(Vec3::Y);
-    let turn = (direction.x.atan2(direction.z) / TAU).rem_euclid(1.0);
-    Vec2::new(turn * COLUMNS as f32, direction.y.clamp(-1.0, 1.0).acos() / PI * (ROWS - 1) as f32)
+    let turn = atan2(offset.x, offset.z) / TAU;
+    let turn = if turn < 0.0 { turn + 1.0 } else { turn };
+    let polar = atan2((offset.x * offset.x + offset.z * offset.z).sqrt(), offset.y);
+    Vec2::new(turn * COLUMNS as f32, polar / PI * (ROWS - 1) as f32)
 }

@@ -3,8 +3,12 @@
 use super::hair_body::HairBody;
 use crate::figures::patch::Patch;
 use crate::figures::random::Random;
-use crate::figures::subdivide::QuadMesh;
+use crate::figures::subdivide::{QuadMesh, Surface};
 use glam::Vec3;
+use rayon::prelude::*;
+
+/// Rounds of as many trials as roots are wanted.
+const MAX_ROUNDS: usize = 20;
 
 /// A root, in the head's frame, metres.
 #[derive(Clone, Copy, Debug)]
@@ -22,13 +26,14 @@ pub fn scatter(body: &HairBody, count: usize, seed: u32, density: &(dyn Fn(Vec3)
     // The skin of the region, as smooth as it is rendered
     let eyes = body.data.eyes_middle();
     let to_head = body.head.inverse();
-    let wanted = |quad: &[u16; 4]| quad.iter().any(|&v| density(body.data.positions[usize::from(v)] - eyes) > 0.0);
-    let smooth = |positions: &[Vec3]| {
-        let patch = Patch::new(body.data, "body", positions, &wanted);
-        let mesh = QuadMesh { positions: patch.positions, quads: patch.quads, uvs: patch.uvs, ..QuadMesh::default() };
-        mesh.subdivided().subdivided()
-    };
-    let (skin, base) = (smooth(body.positions), smooth(&body.data.positions));
+    let is_dense: Vec<bool> = body.data.positions.par_iter().map(|p| density(*p - eyes) > 0.0).collect();
+    let wanted = |quad: &[u16; 4]| quad.iter().any(|&v| is_dense[usize::from(v)]);
+    let Patch { positions, quads, uvs, sources } = Patch::new(body.data, "body", body.positions, &wanted);
+    let base: Vec<Vec3> = sources.iter().map(|&v| body.data.positions[usize::from(v)]).collect();
+    let coarse = Surface::new(QuadMesh { positions, quads, uvs, ..QuadMesh::default() });
+    let middle = coarse.subdivided();
+    let base = middle.subdivided_positions(&coarse.subdivided_positions(&base));
+    let skin = middle.subdivided().mesh;
     let normals = skin.normals();
     // Areas of the quads, summed
     let corners = |index: usize| skin.quads[index].map(|v| skin.positions[v as usize]);
@@ -42,25 +47,30 @@ pub fn scatter(body: &HairBody, count: usize, seed: u32, density: &(dyn Fn(Vec3)
         sum += area(index);
         sums.push(sum);
     }
-    let mut roots = Vec::with_capacity(count);
-    let mut random = Random::new(seed, 1);
-    // A region with little density everywhere would never fill: bound the trials.
-    for _ in 0..count * 20 {
-        if roots.len() == count || sums.is_empty() {
-            break;
-        }
-        let [at, s, t, keep] = [random.unit() * sum, random.unit(), random.unit(), random.unit()];
+    let root = |&[at, s, t, keep]: &[f32; 4]| {
+        let at = at * sum;
         let index = sums.partition_point(|&s| s < at).min(sums.len() - 1);
         let mix = |values: &[Vec3]| {
             let [a, b, c, d] = skin.quads[index].map(|v| values[v as usize]);
             a.lerp(b, s).lerp(d.lerp(c, s), t)
         };
-        let place = mix(&base.positions) - eyes;
-        if keep < density(place) {
+        let place = mix(&base) - eyes;
+        (keep < density(place)).then(|| {
             let position = to_head.transform_point3(mix(&skin.positions));
             let normal = to_head.transform_vector3(mix(&normals)).normalize_or(Vec3::Y);
-            roots.push(Root { position, normal, place });
+            Root { position, normal, place }
+        })
+    };
+    let mut roots: Vec<Root> = Vec::with_capacity(count);
+    let mut random = Random::new(seed, 1);
+    // A region with little density everywhere would never fill: bound the trials.
+    for _ in 0..MAX_ROUNDS {
+        if roots.len() == count || sums.is_empty() {
+            break;
         }
+        let trials: Vec<[f32; 4]> = (0..count).map(|_| std::array::from_fn(|_| random.unit())).collect();
+        roots.par_extend(trials.par_iter().filter_map(root));
+        roots.truncate(count);
     }
     roots
 }

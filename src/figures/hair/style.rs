@@ -1,6 +1,7 @@
 //! Hair styles as numbers.
 
 use super::head_surface::is_ear;
+use crate::math::atan2;
 use crate::scene::{Beard, HairStyle};
 use glam::Vec3;
 
@@ -190,12 +191,19 @@ pub fn scalp_density(place: Vec3) -> f32 {
         (125.0, -0.045),
         (180.0, -0.075),
     ];
+    const SOFT_M: f32 = 0.006;
+    // Most places are far above or below
+    if place.y < HAIRLINE[HAIRLINE.len() - 1].1 || is_ear(place) {
+        return 0.0;
+    }
+    if place.y > HAIRLINE[0].1 + SOFT_M {
+        return 1.0;
+    }
     let angle = angle_from_front(place);
     let upper = HAIRLINE.iter().position(|(at, _)| *at >= angle).unwrap_or(HAIRLINE.len() - 1).max(1);
     let ((a0, h0), (a1, h1)) = (HAIRLINE[upper - 1], HAIRLINE[upper]);
     let line = h0 + (h1 - h0) * ((angle - a0) / (a1 - a0)).clamp(0.0, 1.0);
-    // Ears stick out of the scalp.
-    if is_ear(place) { 0.0 } else { ((place.y - line) / 0.006).clamp(0.0, 1.0) }
+    ((place.y - line) / SOFT_M).clamp(0.0, 1.0)
 }
 
 /// Returns how much hair grows before the ears, where short hair has sideburns; see [`scalp_density`].
@@ -211,7 +219,7 @@ pub fn sideburn_density(place: Vec3) -> f32 {
 
 /// Returns the angle of a place from the front about the middle of the head, degrees.
 fn angle_from_front(place: Vec3) -> f32 {
-    place.x.abs().atan2(place.z + 0.085).to_degrees()
+    atan2(place.x.abs(), place.z + 0.085).to_degrees()
 }
 
 /// Returns how much beard grows at a place of the face; see [`scalp_density`].

@@ -19,7 +19,7 @@
 use super::fresnel;
 use super::sample::BsdfSample;
 use crate::color::luminance;
-use crate::math::{orthonormal_basis, safe_sqrt, sin_cos_turn};
+use crate::math::{atan2, orthonormal_basis, safe_sqrt, sin_cos_turn};
 use crate::scene::Fibre;
 use glam::{Vec2, Vec3};
 use std::f32::consts::{FRAC_1_SQRT_2, PI, TAU};
@@ -150,7 +150,7 @@ impl<'a> FibreBsdf<'a> {
     /// Returns BSDF times cosine, and the density of [`FibreBsdf::sample`] (1/sr), for a unit direction.
     pub fn eval(&self, direction: Vec3) -> (Vec3, f32) {
         let sin_theta = direction.dot(self.tangent).clamp(-1.0, 1.0);
-        let azimuth = direction.dot(self.across).atan2(direction.dot(self.facing));
+        let azimuth = atan2(direction.dot(self.across), direction.dot(self.facing));
         self.eval_local(sin_theta, safe_sqrt(1.0 - sin_theta * sin_theta), azimuth)
     }
 

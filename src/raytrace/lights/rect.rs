@@ -1,7 +1,7 @@
 //! A rectangular emitter, sampled uniformly in solid angle (Urena, Fajardo and King 2013, "An Area-Preserving
 //! Parametrization for Spherical Rectangles").
 
-use crate::math::safe_sqrt;
+use crate::math::{atan2, safe_sqrt};
 use glam::{Vec2, Vec3};
 use std::f32::consts::TAU;
 
@@ -126,7 +126,7 @@ impl EdgePlane {
 /// Returns the sum of two angles, given by cosine and sine, modulo 2 pi. One arc tangent is faster than two arc
 /// cosines, and precise near zero.
 fn sum_of_angles((cos_a, sin_a): (f32, f32), (cos_b, sin_b): (f32, f32)) -> f32 {
-    (sin_a * cos_b + cos_a * sin_b).atan2(cos_a * cos_b - sin_a * sin_b)
+    atan2(sin_a * cos_b + cos_a * sin_b, cos_a * cos_b - sin_a * sin_b)
 }
 
 impl SphericalRect<'_> {
