@@ -1,12 +1,13 @@
 //! Eyes: a white ball with a bulging cornea that shows the lights. Iris and pupil are painted on the cornea, so that a
-//! portrait is traced without refraction.
+//! portrait is traced without refraction. Below its gloss the iris has the normals of what lies there: a flat disc with
+//! fibres, so that the side opposite to a light is the brighter one, as behind a real cornea.
 //!
 //! Proportions are those of Atchison and Smith 2000, "Optics of the Human Eye": a ball of 12 mm radius, a cornea of
-//! 7.8 mm radius
-//! and an iris of 11.8 mm diameter.
+//! 7.8 mm radius and an iris of 11.8 mm diameter.
 
 use super::random::Random;
 use super::subdivide::QuadMesh;
+use crate::scene::Texture;
 use glam::{Affine3A, Vec2, Vec3};
 use std::f32::consts::TAU;
 
@@ -20,6 +21,12 @@ const CORNEA: f32 = 0.65;
 const AROUND: usize = 96;
 /// Rings of the iris.
 const IRIS_RINGS: u32 = 12;
+/// Size of the picture of the iris's relief: around, and from its edge to the pupil, pixels.
+const RELIEF_SIZE: [usize; 2] = [256, 64];
+/// Angle by which the edge of the iris leans inwards: the cornea focuses light onto the opposite side. Typical.
+const HOLLOW_RAD: f32 = 0.25;
+/// Greatest slope of the fibres of the iris, across them. Typical.
+const FIBRE_SLOPE: f32 = 0.35;
 
 /// The cornea of an eye: a cap of a sphere.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -119,6 +126,26 @@ fn iris_color(around: usize, ring: usize) -> Vec3 {
     tint * rim * (1.0 - 0.8 * limbus)
 }
 
+/// Draws the normals of the iris relative to those of the cornea over it: U goes round, V from the edge to the pupil.
+pub fn iris_relief() -> Texture {
+    let [width, height] = RELIEF_SIZE;
+    let edge_of = |part: f32| (part / CORNEA).asin();
+    let mut random = Random::new(0, 11);
+    let fibres: Vec<f32> = (0..width).map(|_| FIBRE_SLOPE * (2.0 * random.unit() - 1.0)).collect();
+    let pixel = |index: usize| {
+        // Rows run down, V runs up
+        let v = 1.0 - ((index / width) as f32 + 0.5) / height as f32;
+        let angle = edge_of(IRIS) + (edge_of(PUPIL) - edge_of(IRIS)) * v;
+        let outwards = (CORNEA * angle.sin() - PUPIL) / (IRIS - PUPIL);
+        let inwards = angle + HOLLOW_RAD * outwards;
+        // Fibres end before the edge
+        let across = fibres[index % width] * (4.0 * outwards * (1.0 - outwards)).clamp(0.0, 1.0);
+        let normal = Vec3::new(across, inwards.sin(), inwards.cos()).normalize_or(Vec3::Z);
+        normal.to_array().map(|c| ((c + 1.0) * 127.5).round() as u8)
+    };
+    Texture::opaque(width as u32, height as u32, (0..width * height).map(pixel).collect())
+}
+
 /// Appends a surface of revolution about Z from points (radius, z), outside to the front.
 fn add_rings(mesh: &mut QuadMesh, world: Affine3A, part: u8, profile: impl Iterator<Item = Vec2>) {
     let first = mesh.positions.len() as u32;
@@ -135,10 +162,40 @@ fn add_rings(mesh: &mut QuadMesh, world: Affine3A, part: u8, profile: impl Itera
         for k in 0..around {
             let [a, b] = [ring * around + k, ring * around + (k + 1) % around].map(|v| v + first);
             mesh.quads.push([a, b, b + around, a + around]);
-            let [u, v] = [k as f32 / around as f32, ring as f32 / rings as f32];
-            let (du, dv) = (1.0 / around as f32, 1.0 / rings as f32);
+            let [u, v] = [k as f32 / around as f32, ring as f32 / (rings - 1) as f32];
+            let (du, dv) = (1.0 / around as f32, 1.0 / (rings - 1) as f32);
             mesh.uvs.push([Vec2::new(u, v), Vec2::new(u + du, v), Vec2::new(u + du, v + dv), Vec2::new(u, v + dv)]);
             mesh.parts.push(part);
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::{decode_normal, position_derivatives, tilted_normal};
+
+    #[test]
+    fn the_normals_of_the_iris_lean_towards_the_pupil_and_those_of_the_cornea_away() {
+        let mut mesh = QuadMesh::default();
+        add_eye(&mut mesh, Affine3A::IDENTITY, |part| part as u8);
+        let (normals, relief) = (mesh.normals(), iris_relief());
+        let mut count = 0;
+        for (index, quad) in mesh.quads.iter().enumerate().filter(|(i, _)| mesh.parts[*i] == EyePart::Iris as u8) {
+            let [a, b, _, d] = quad.map(|v| mesh.positions[v as usize]);
+            let uvs = mesh.uvs[index];
+            let derivatives = position_derivatives([b - a, d - a], [uvs[1] - uvs[0], uvs[3] - uvs[0]]).unwrap();
+            let middle = (uvs[0] + uvs[2]) / 2.0;
+            let [x, y] = [middle.x * RELIEF_SIZE[0] as f32, (1.0 - middle.y) * RELIEF_SIZE[1] as f32];
+            let code = relief.rgb[y as usize * RELIEF_SIZE[0] + x as usize].map(|c| f32::from(c) / 255.0);
+            let cornea = (normals[quad[0] as usize] + normals[quad[2] as usize]).normalize();
+            let iris = tilted_normal(cornea, derivatives, decode_normal(code.into(), 1.0));
+            let outwards = ((a + b) / 2.0).with_z(0.0).normalize();
+            assert!(cornea.dot(outwards) > 0.2, "{cornea} at {a}");
+            // Within the rounding of the picture and of the ring's middle
+            assert!((-0.3..0.03).contains(&iris.dot(outwards)) && iris.z > 0.85, "{iris} at {a}");
+            count += 1;
+        }
+        assert_eq!(count, AROUND * IRIS_RINGS as usize);
     }
 }

@@ -2,7 +2,7 @@
 
 use super::skin_colors::mean_of_blotches;
 use super::skin_textures::skin_textures;
-use crate::scene::{Figure, Material, MaterialPreset, MaterialTextures, Object, Shape};
+use crate::scene::{BuiltinTexture, Figure, Material, MaterialPreset, MaterialTextures, Object, Shape, TextureRef};
 use glam::Vec3;
 
 /// A skin tone: a class of the individual typology angle ITA = atan((L* - 50) / b*) (Chardon et al. 1991, "Skin colour
@@ -78,7 +78,12 @@ pub const EYE_COLORS: [EyeColor; 6] = [
 impl EyeColor {
     /// Returns the material of the iris.
     pub fn material(&self) -> Material {
-        Material { base_color: self.base_color, ..MaterialPreset::Eye.material() }
+        let textures = MaterialTextures {
+            normal: Some(TextureRef::Builtin(BuiltinTexture::IrisRelief)),
+            smooth_gloss: true,
+            ..MaterialTextures::default()
+        };
+        Material { base_color: self.base_color, textures, ..MaterialPreset::Eye.material() }
     }
 }
 

@@ -3,6 +3,7 @@
 //! Regions, and the furrows some 0.9 mm apart whose slopes have a root mean square of 0.1, are typical, not measured.
 
 use super::body_data::BodyData;
+use super::eyes::iris_relief;
 use super::random::Random;
 use super::skin_colors::{Region, factor_at, region};
 use crate::scene::{BuiltinTexture, MaterialTextures, Texture, TextureRef, TextureSlot};
@@ -62,9 +63,11 @@ pub fn skin_textures() -> MaterialTextures {
 pub fn builtin_texture(texture: BuiltinTexture) -> Arc<Texture> {
     static GLOSS: LazyLock<Arc<Texture>> = LazyLock::new(|| Arc::new(skin_gloss(BodyData::shipped())));
     static RELIEF: LazyLock<Arc<Texture>> = LazyLock::new(|| Arc::new(skin_relief()));
+    static IRIS: LazyLock<Arc<Texture>> = LazyLock::new(|| Arc::new(iris_relief()));
     match texture {
         BuiltinTexture::SkinGloss => GLOSS.clone(),
         BuiltinTexture::SkinRelief => RELIEF.clone(),
+        BuiltinTexture::IrisRelief => IRIS.clone(),
     }
 }
 

@@ -1,7 +1,8 @@
 //! Mathematics beyond glam: safe square roots and angles, frames, quadrature, quantiles, bounded least squares, sampling
-//! warps with their densities, rays with error bounds, SIMD dispatch.
+//! warps with their densities, rays with error bounds, SIMD dispatch, and approximations for it.
 
 mod angle;
+pub mod approx;
 mod bounded_least_squares;
 mod frame;
 mod mean;

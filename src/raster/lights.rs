@@ -1,7 +1,7 @@
 //! Lights without shadows, in picture units, and their light at the points of a row.
 
-use super::approx::{self, max, min};
 use super::gbuffer_row::{PADDED_WIDTH, RowScalar, RowVec3, WIDTH};
+use crate::math::approx::{self, max, min};
 use crate::photo::beam::{Beam, doors_transmission};
 use crate::photo::emitter::{EmitterShape, IntensityDistribution};
 use crate::photo::{MeasuredBeam, PhotometricLight, exposure};

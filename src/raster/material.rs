@@ -1,8 +1,8 @@
 //! Materials for shading: Lambert's diffuse lobe and the normalized Blinn-Phong specular lobe.
 
-use super::approx::{self, max, min};
 use super::gbuffer_row::{PADDED_WIDTH, RowScalar, RowVec3, WIDTH, splat};
 use super::surface_texture::PixelFactors;
+use crate::math::approx::{self, max, min};
 use crate::scene::Material;
 use glam::Vec3;
 use std::f32::consts::PI;

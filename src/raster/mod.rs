@@ -15,7 +15,6 @@
 //! surround; panels shine from their centre, with a term that is exact on the axis of a disc at any distance; emitters
 //! themselves are not drawn.
 
-mod approx;
 mod binning;
 mod clip;
 mod edge_function;

@@ -2,7 +2,6 @@
 //! written in a plain loop over a row, which the compiler makes eight pixels wide.
 #![expect(clippy::needless_range_loop, reason = "a pixel's index is the same in a dozen arrays")]
 
-use super::approx::max;
 use super::gbuffer_row::{GBufferRow, PADDED_WIDTH, RowScalar, RowVec3, Span, VertexAttributes, WIDTH, splat};
 use super::geometry::{Chunk, SceneGeometry, Surface};
 use super::lights::{IncidentLight, RasterLights};
@@ -11,6 +10,7 @@ use super::surface_texture::{PixelFactors, linear_from_srgb};
 use super::textured_triangle::TexturedTriangle;
 use super::triangle::TriangleId;
 use super::vertex_stage::ChunkVertices;
+use crate::math::approx::max;
 use crate::math::simd::{self, Avx2, SimdTask};
 use glam::Vec3;
 use rayon::prelude::*;

@@ -3,13 +3,13 @@
 //! Tiles are drawn in parallel. A tile first finds the visible triangle of each pixel, and then shades each pixel once.
 //! Where the framebuffer holds an earlier chunk, pixels of the tile that nothing nearer covers stay as they are.
 
-use super::approx::max;
 use super::binning::{NO_TRIANGLE, TriangleBatch, triangle_of_key};
 use super::framebuffer::Framebuffer;
 use super::gbuffer_row::{GBufferRow, LANES, PADDED_WIDTH, WIDTH};
 use super::shade::{FragmentShader, ShadingScratch};
 use super::triangle::ScreenTriangle;
 use super::viewport::{TILE_HEIGHT, TILE_WIDTH, Viewport};
+use crate::math::approx::max;
 use crate::math::simd::{self, Avx2, SimdTask};
 use glam::Vec3;
 use rayon::prelude::*;

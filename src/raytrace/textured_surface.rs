@@ -41,7 +41,7 @@ impl RenderScene {
     /// Replaces the shading normal by that of the normal map, bent so that the mirror direction of the ray stays above
     /// the surface. The diffuse lobe has no such direction: it keeps the normal of the map, or relief that leans away
     /// from the viewer would be lit as if it faced him. Light that comes out of a soft surface was spread under it, farther
-    /// than relief is wide: it has the normal without the map.
+    /// than relief is wide: it has the normal without the map. A smooth gloss keeps the shading normal.
     fn apply_normal_map(&self, surface: &mut SurfaceInteraction, direction: Vec3, hit: &Hit) {
         let material = self.material_of(surface);
         let (Some(map), Primitive::Triangle(triangle)) = (self.texture(material, TextureSlot::Normal), &hit.primitive)
@@ -60,7 +60,9 @@ impl RenderScene {
         let normal = bend_above(relief_normal * side, surface.geometric_normal * side, view_dir) * side;
         let is_soft = self.plan.subsurface && material.extinction_per_m().is_some();
         surface.relief_normal = if is_soft { surface.normal } else { relief_normal };
-        surface.normal = normal;
+        if !material.smooth_gloss {
+            surface.normal = normal;
+        }
     }
 
     /// Returns the material of a surface.

@@ -7,11 +7,14 @@ pub enum BuiltinTexture {
     SkinGloss,
     /// Fine relief of skin, a square of [`BuiltinTexture::RELIEF_M`] that repeats, for [`super::TextureSlot::Normal`].
     SkinRelief,
+    /// Relief of the iris, about the eye and from its edge to the pupil, for [`super::TextureSlot::Normal`].
+    IrisRelief,
 }
 
 impl BuiltinTexture {
     /// All variants.
-    pub const ALL: [BuiltinTexture; 2] = [BuiltinTexture::SkinGloss, BuiltinTexture::SkinRelief];
+    pub const ALL: [BuiltinTexture; 3] =
+        [BuiltinTexture::SkinGloss, BuiltinTexture::SkinRelief, BuiltinTexture::IrisRelief];
 
     /// Side of the square that [`BuiltinTexture::SkinRelief`] shows, metres.
     pub const RELIEF_M: f32 = 0.024;
@@ -21,6 +24,7 @@ impl BuiltinTexture {
         match self {
             BuiltinTexture::SkinGloss => "Skin gloss",
             BuiltinTexture::SkinRelief => "Skin relief",
+            BuiltinTexture::IrisRelief => "Iris relief",
         }
     }
 
@@ -29,6 +33,7 @@ impl BuiltinTexture {
         match self {
             BuiltinTexture::SkinGloss => "builtin:skin-gloss",
             BuiltinTexture::SkinRelief => "builtin:skin-relief",
+            BuiltinTexture::IrisRelief => "builtin:iris-relief",
         }
     }
 }

@@ -156,6 +156,9 @@ pub struct MaterialTextures {
     pub normal: Option<TextureRef>,
     /// Factor of the normal texture's tilt; 1 is as drawn.
     pub normal_scale: f32,
+    /// The gloss has the normal of the mesh: it lies over the relief, as lacquer over carved wood and the cornea over the
+    /// iris.
+    pub smooth_gloss: bool,
     /// How each texture lies on the surface, by slot.
     pub placements: [TexturePlacement; TextureSlot::COUNT],
 }
@@ -168,6 +171,7 @@ impl Default for MaterialTextures {
             emission: None,
             normal: None,
             normal_scale: 1.0,
+            smooth_gloss: false,
             placements: [TexturePlacement::default(); TextureSlot::COUNT],
         }
     }

@@ -170,6 +170,33 @@ fn a_normal_map_of_one_tilt_is_a_mesh_with_tilted_normals_in_every_renderer() {
 }
 
 #[test]
+fn a_smooth_gloss_lies_over_the_relief_of_its_normal_map() {
+    let Some(mut renderer) = shared_renderer() else { return };
+    let code = |value: f32| ((value * 0.5 + 0.5) * 255.0).round() as u8;
+    let tilt = Vec3::new(0.48, 0.36, 0.8);
+    let mut assets = Assets::default();
+    let map = TextureRef::file("normals.png");
+    assets.insert_texture(map.clone(), Arc::new(Texture::opaque(1, 1, vec![tilt.to_array().map(code)])));
+    // The gloss alone has the normal of the mesh, what is below it that of the map
+    let gloss = Material { base_color: [0.0; 3], roughness: 0.3, ..Material::default() };
+    let matte = Material { ior: 1.0, ..Material::default() };
+    for (part, plain, normal) in [("gloss", gloss, Vec3::Z), ("matte", matte, tilt.normalize())] {
+        let textures =
+            MaterialTextures { normal: Some(map.clone()), smooth_gloss: true, ..MaterialTextures::default() };
+        let mapped = scene_of(Material { textures, ..plain.clone() }, square(), &mut assets);
+        let ours = pictures(&mut renderer, &mapped, &assets, 64);
+        let truth = scene_of(plain, Mesh { normals: vec![normal; 4], ..square() }, &mut assets);
+        let truth = pictures(&mut renderer, &truth, &assets, 64);
+        // The rasteriser has one normal
+        for ((name, ours), (_, truth)) in ours.iter().zip(&truth).filter(|((name, _), _)| *name != "raster") {
+            let (off, mean) = difference(ours, truth);
+            println!("{name}, {part}: off by {:.3} % of {mean}", 100.0 * off / mean);
+            assert!(mean > 1e-4 && off < 0.02 * mean, "{name}, {part}: off by {off} of {mean}");
+        }
+    }
+}
+
+#[test]
 fn a_map_of_glow_has_its_luminance_in_every_renderer() {
     let Some(mut renderer) = shared_renderer() else { return };
     // The left half glows red, the right half at an eighth in green: sRGB code 99 is 0.125

@@ -34,6 +34,8 @@ pub(super) enum MaterialV1 {
         #[serde(default = "unit", skip_serializing_if = "is_unit")]
         normal_scale: f32,
         #[serde(default, skip_serializing_if = "is_default")]
+        smooth_gloss: bool,
+        #[serde(default, skip_serializing_if = "is_default")]
         metallic: f32,
         #[serde(default = "default_roughness")]
         roughness: f32,
@@ -157,6 +159,7 @@ impl From<MaterialV1> for Material {
                 normal_texture,
                 normal_placement,
                 normal_scale,
+                smooth_gloss,
                 metallic,
                 roughness,
                 ior,
@@ -180,6 +183,7 @@ impl From<MaterialV1> for Material {
                     emission: emission_texture.as_deref().map(TextureRef::parse),
                     normal: normal_texture.as_deref().map(TextureRef::parse),
                     normal_scale,
+                    smooth_gloss,
                     placements: TextureSlot::ALL.map(|slot| {
                         let placement = match slot {
                             TextureSlot::BaseColor => base_color_placement,
@@ -248,6 +252,7 @@ impl From<&Material> for MaterialV1 {
             normal_texture: texture(TextureSlot::Normal),
             normal_placement: placement(TextureSlot::Normal),
             normal_scale: textures.normal_scale,
+            smooth_gloss: textures.smooth_gloss,
             metallic,
             roughness,
             ior,

@@ -5,7 +5,8 @@ use super::draw_item::{DrawItem, DrawPass, ShadowCasting, Sides, StrandItem};
 use super::mesh_cache::{EmitterSurface, MeshKey};
 use super::oriented_box::OrientedBox;
 use super::surface::{
-    FLAG_EMITTER, FLAG_GLOWS, FLAG_HOVERED, FLAG_RELIEF, FLAG_SELECTED, GpuDraw, GpuSurface, diffusion_m, packed_layers,
+    FLAG_EMITTER, FLAG_GLOWS, FLAG_HOVERED, FLAG_RELIEF, FLAG_SELECTED, FLAG_SMOOTH_GLOSS, GpuDraw, GpuSurface,
+    diffusion_m, packed_layers,
 };
 use crate::photo::PhotometricLight;
 use crate::photo::emitter::EmitterShape;
@@ -222,7 +223,11 @@ impl DrawList {
         let glow = emission(material, scene);
         let glows = glow.is_finite() && glow.max_element() > 0.0;
         let PlainBase { base_color, roughness } = material.plain_base();
-        let has_relief = material.textures.normal.is_some();
+        let relief = match &material.textures.normal {
+            Some(_) if material.textures.smooth_gloss => FLAG_RELIEF | FLAG_SMOOTH_GLOSS,
+            Some(_) => FLAG_RELIEF,
+            None => 0,
+        };
         let surface = GpuSurface {
             base_color: base_color.map(|c| c.clamp(0.0, 1.0)),
             roughness: roughness.clamp(0.0, 1.0),
@@ -230,7 +235,7 @@ impl DrawList {
             metallic: material.metallic.clamp(0.0, 1.0),
             ior: material.ior.clamp(1.0, 4.0),
             transmission: material.transmission.clamp(0.0, 1.0),
-            flags: flags | if glows { FLAG_GLOWS } else { 0 } | if has_relief { FLAG_RELIEF } else { 0 },
+            flags: flags | if glows { FLAG_GLOWS } else { 0 } | relief,
             layers: packed_layers(material),
             diffusion_m: diffusion_m(material),
             unused_1: 0,

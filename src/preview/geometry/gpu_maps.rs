@@ -16,9 +16,12 @@ pub(crate) struct GpuMaps {
     cutoff: f32,
     /// Factor of the alpha of blended surfaces.
     opacity: f32,
-    /// Bits of the slots that lie by the second set of texture coordinates.
-    second_uvs: u32,
+    /// Bits of the slots that lie by the second set of texture coordinates, and of a smooth gloss.
+    bits: u32,
 }
+
+/// Bit of a surface whose normal map is below the gloss; twin of `SMOOTH_GLOSS_BIT` in `draw.wgsl`.
+const SMOOTH_GLOSS_BIT: u32 = 256;
 
 impl GpuMaps {
     /// Packs the placements of a material.
@@ -32,6 +35,7 @@ impl GpuMaps {
             Alpha::Blend { opacity } => (-1.0, opacity),
         };
         let bit = |slot: &TextureSlot| u32::from(textures.placement(*slot).second_uvs) << (*slot as u32);
+        let smooth_gloss = if textures.normal.is_some() && textures.smooth_gloss { SMOOTH_GLOSS_BIT } else { 0 };
         GpuMaps {
             matrices: transforms.map(|transform| transform.matrix2.to_cols_array()),
             offsets: [[a.x, a.y, b.x, b.y], [c.x, c.y, d.x, d.y]],
@@ -39,7 +43,7 @@ impl GpuMaps {
             normal_scale: if textures.normal.is_some() { textures.normal_scale } else { 0.0 },
             cutoff,
             opacity,
-            second_uvs: TextureSlot::ALL.iter().map(bit).sum(),
+            bits: TextureSlot::ALL.iter().map(bit).sum::<u32>() | smooth_gloss,
         }
     }
 }

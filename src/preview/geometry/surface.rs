@@ -16,6 +16,8 @@ pub(crate) const FLAG_HOVERED: u32 = 8;
 
 /// The surface has a normal map; twin of `FLAG_RELIEF` in `scene.wgsl`.
 pub(crate) const FLAG_RELIEF: u32 = 16;
+/// The normal map is below the gloss; twin of `FLAG_SMOOTH_GLOSS` in `scene.wgsl`.
+pub(crate) const FLAG_SMOOTH_GLOSS: u32 = 32;
 
 /// A surface in the storage buffer; twin of `Surface` in `scene.wgsl`.
 #[repr(C)]

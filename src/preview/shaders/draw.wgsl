@@ -13,9 +13,12 @@ struct Draw {
     uv_matrix: array<vec4f, 4>,
     uv_offset: array<vec4f, 2>,
     // Scale of the normal map; least alpha that is there, negative for blended surfaces; factor of the alpha of those; bits
-    // of the slots that lie by the second set of texture coordinates.
+    // of the slots that lie by the second set of texture coordinates, and of a smooth gloss.
     maps: vec4f,
 }
+
+// Bit of a surface whose normal map is below the gloss; twin of `gpu_maps.rs`.
+const SMOOTH_GLOSS_BIT: u32 = 256u;
 
 @group(1) @binding(0) var<uniform> draw: Draw;
 

@@ -131,7 +131,7 @@ fn hair_scatter(f: Fibre, direction: vec3f, angle2: f32) -> vec3f {
 }
 
 // Number of strands that light passes on its way into shadowed hair, for an estimate.
-const STRANDS_IN_SHADOW: f32 = 4.0;
+const STRANDS_IN_SHADOW: f32 = 5.0;
 
 // Returns the visibility of a light, with the light that strands in front let pass and scatter onwards.
 fn scattered_visibility(f: Fibre, visibility: f32) -> vec3f {

@@ -94,6 +94,8 @@ fn fragment(in: VertexOutput, @builtin(front_facing) front: bool) -> FragmentOut
         let d2 = dpdy(in.world);
         let tilted = tilted_normal(normalize(normal), d1, d2, dpdx(normal_uv), dpdy(normal_uv), direction);
         // It is bent towards the viewer where the lighting pass needs that
+        // A smooth gloss keeps the normal that it has, in the place of the geometric one
+        geometric_normal = select(geometric_normal, normal, (bitcast<u32>(draw.maps.w) & SMOOTH_GLOSS_BIT) != 0u);
         normal = select(normal, tilted, draw.maps.x != 0.0);
     }
     if any(in.color < vec3f(0.999)) {

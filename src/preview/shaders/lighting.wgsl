@@ -178,8 +178,11 @@ fn shade(p: GBufferSample) -> ShadedLight {
     var mirror_normal = normal;
     if HAS_RELIEF {
         let flags = surfaces[max(p.id.x & ID_INDEX_MASK, 1u) - 1u].flags;
-        let bent = bend_above(normal, unpack_direction(p.packed.z), -normalize(ray));
-        mirror_normal = select(normal, bent, p.id.x != 0u && (flags & FLAG_RELIEF) != 0u);
+        // A smooth gloss has its normal in place of the geometric one
+        let surface_normal = unpack_direction(p.packed.z);
+        let bent = bend_above(normal, surface_normal, -normalize(ray));
+        let mirror = select(bent, surface_normal, (flags & FLAG_SMOOTH_GLOSS) != 0u);
+        mirror_normal = select(normal, mirror, p.id.x != 0u && (flags & FLAG_RELIEF) != 0u);
     }
     let s = shading(position, mirror_normal, -normalize(ray), unpack_color(p.packed.y), gloss);
     // Ambient and environment light

@@ -67,6 +67,8 @@ struct Surface {
 
 // Flag of a surface with a normal map.
 const FLAG_RELIEF: u32 = 16u;
+// Flag of a surface whose normal map is below the gloss.
+const FLAG_SMOOTH_GLOSS: u32 = 32u;
 
 // Outline flags in the id buffer; the other bits hold the surface index plus one, 0 for the background.
 const ID_SELECTED: u32 = 1u << 31u;

@@ -19,10 +19,11 @@
 use super::fresnel;
 use super::sample::BsdfSample;
 use crate::color::luminance;
-use crate::math::{atan2, orthonormal_basis, safe_sqrt, sin_cos_turn};
+use crate::math::simd::{self, Avx2, SimdTask};
+use crate::math::{approx, atan2, orthonormal_basis, safe_sqrt, sin_cos_turn};
 use crate::scene::Fibre;
 use glam::{Vec2, Vec3};
-use std::f32::consts::{FRAC_1_SQRT_2, PI, TAU};
+use std::f32::consts::{FRAC_1_SQRT_2, FRAC_PI_2, PI, TAU};
 
 /// Index of refraction of keratin (Marschner et al. 2003, "Light Scattering from Human Hair Fibers").
 const IOR: f32 = 1.55;
@@ -101,19 +102,21 @@ pub struct FibreBsdf<'a> {
     across: Vec3,
     /// Sine and cosine of the outgoing direction's longitude, tilted for each lobe.
     outgoing: [(f32, f32); LOBES],
-    /// R, TT and TRT at each offset.
-    peaks: [[AzimuthalPeak; OFFSETS]; LOBES - 1],
+    /// R, TT and TRT.
+    peaks: [AzimuthalPeaks; LOBES - 1],
     /// Attenuation of each lobe, summed over the offsets, by which lobes are sampled.
     attenuation: [Vec3; LOBES],
+    /// Luminance of the albedo.
+    luminance: f32,
 }
 
-/// The azimuthal lobe of R, TT or TRT for rays that meet a fibre at one offset.
+/// The azimuthal lobe of R, TT or TRT for rays that meet a fibre at each offset.
 #[derive(Clone, Copy, Debug, Default)]
-struct AzimuthalPeak {
-    /// Azimuth that the cylinder's surface would give.
-    azimuth: f32,
-    /// Attenuation, times the offset's part of the width.
-    attenuation: Vec3,
+struct AzimuthalPeaks {
+    /// Azimuths that the cylinder's surface would give.
+    azimuth: [f32; OFFSETS],
+    /// Attenuations of the colour channels, times the offset's part of the width.
+    attenuation: [[f32; OFFSETS]; 3],
 }
 
 impl<'a> FibreBsdf<'a> {
@@ -127,24 +130,13 @@ impl<'a> FibreBsdf<'a> {
         let across = tangent.cross(facing);
         // Refract a ray into the cylinder at an offset in each stratum
         let place = (0.5 + 0.5 * h.clamp(-1.0, 1.0)) * OFFSETS as f32;
-        let place = place - place.floor();
-        let mut peaks = [[AzimuthalPeak::default(); OFFSETS]; LOBES - 1];
-        let mut attenuation = [Vec3::ZERO; LOBES];
-        for (stratum, edges) in STRATA.windows(2).enumerate() {
-            let h = edges[0] + place * (edges[1] - edges[0]);
-            let part = 0.5 * (edges[1] - edges[0]);
-            let (attenuations, sin_gamma_t) = attenuations(fibre.absorption, sin_theta, cos_theta, h);
-            let azimuths = azimuths(h, sin_gamma_t);
-            for (lobe, peaks) in peaks.iter_mut().enumerate() {
-                peaks[stratum] = AzimuthalPeak { azimuth: azimuths[lobe], attenuation: attenuations[lobe] * part };
-            }
-            for (sum, value) in attenuation.iter_mut().zip(attenuations) {
-                *sum += value * part;
-            }
-        }
+        let place = place - place as u32 as f32;
+        let refraction = Refraction { absorption: fibre.absorption, sin_theta, cos_theta, place };
+        let (peaks, attenuation) = simd::dispatch(refraction);
+        let luminance = luminance(attenuation.into_iter().sum());
         let tilted =
             |(sin, cos): (f32, f32)| (sin_theta * cos + cos_theta * sin, (cos_theta * cos - sin_theta * sin).abs());
-        FibreBsdf { fibre, tangent, facing, across, outgoing: fibre.tilts.map(tilted), peaks, attenuation }
+        FibreBsdf { fibre, tangent, facing, across, outgoing: fibre.tilts.map(tilted), peaks, attenuation, luminance }
     }
 
     /// Returns BSDF times cosine, and the density of [`FibreBsdf::sample`] (1/sr), for a unit direction.
@@ -155,46 +147,32 @@ impl<'a> FibreBsdf<'a> {
     }
 
     fn eval_local(&self, sin_theta: f32, cos_theta: f32, azimuth: f32) -> (Vec3, f32) {
-        let mut value = Vec3::ZERO;
-        for lobe in 0..LOBES {
-            let (sin_o, cos_o) = self.outgoing[lobe];
-            let along = self.fibre.longitudinal[lobe].density(sin_theta, cos_theta, sin_o, cos_o);
-            let around = match self.peaks.get(lobe) {
-                Some(peaks) => {
-                    let density = |peak: &AzimuthalPeak| self.fibre.azimuthal.density(azimuth - peak.azimuth);
-                    peaks.iter().map(|peak| peak.attenuation * density(peak)).sum()
-                }
-                None => self.attenuation[lobe] * (1.0 / TAU),
-            };
-            value += around * along;
-        }
+        let value = simd::dispatch(Evaluation { bsdf: self, sin_theta, cos_theta, azimuth });
         // Lobes and offsets are sampled by their luminance, so that the density is that of the value
-        (value, luminance(value) / self.total_luminance())
-    }
-
-    /// Returns the luminance of the albedo.
-    fn total_luminance(&self) -> f32 {
-        luminance(self.attenuation.into_iter().sum())
+        (value, luminance(value) / self.luminance)
     }
 
     /// Samples a direction for a lobe number in 0..1 and a point of the unit square.
     pub fn sample(&self, u_lobe: f32, u: Vec2) -> Option<BsdfSample> {
         // Sample a lobe and an offset; the rest of the number is uniform again
-        let mut rest = u_lobe * self.total_luminance();
+        let mut rest = u_lobe * self.luminance;
         let lobe = sample_index(self.attenuation.map(luminance), &mut rest);
         let (sin_theta, cos_theta) = self.fibre.longitudinal[lobe].sample(self.outgoing[lobe], u);
         let azimuth = match self.peaks.get(lobe) {
             Some(peaks) => {
-                let weights = peaks.map(|peak| luminance(peak.attenuation));
+                let [r, g, b] = peaks.attenuation;
+                let weights = std::array::from_fn::<_, OFFSETS, _>(|k| luminance(Vec3::new(r[k], g[k], b[k])));
                 let offset = sample_index(weights, &mut rest);
                 let u_azimuth = (rest / weights[offset]).clamp(0.0, 1.0 - f32::EPSILON);
-                peaks[offset].azimuth + self.fibre.azimuthal.sample(u_azimuth)
+                peaks.azimuth[offset] + self.fibre.azimuthal.sample(u_azimuth)
             }
             None => TAU * rest / luminance(self.attenuation[lobe]),
         };
         // Evaluate all lobes in that direction
         let (value, pdf) = self.eval_local(sin_theta, cos_theta, azimuth);
-        let (sin, cos) = azimuth.sin_cos();
+        // R, TT and TRT turn by less than two turns
+        let turns = azimuth / TAU + 2.0;
+        let (sin, cos) = sin_cos_turn(turns - turns as u32 as f32);
         let direction = self.tangent * sin_theta + (self.facing * cos + self.across * sin) * cos_theta;
         (pdf > 0.0).then(|| BsdfSample::non_specular(direction.normalize_or(self.facing), value / pdf, pdf))
     }
@@ -211,26 +189,106 @@ fn sample_index<const N: usize>(weights: [f32; N], number: &mut f32) -> usize {
     index
 }
 
+/// The refraction of a ray into a cylinder at an offset in each stratum, eight at a time.
+struct Refraction {
+    absorption: Vec3,
+    sin_theta: f32,
+    cos_theta: f32,
+    /// Place in each stratum, 0 to 1.
+    place: f32,
+}
+
+impl SimdTask for Refraction {
+    type Output = ([AzimuthalPeaks; LOBES - 1], [Vec3; LOBES]);
+
+    #[inline(always)]
+    fn run(self, _: Option<Avx2>) -> Self::Output {
+        let Refraction { absorption, sin_theta, cos_theta, place } = self;
+        let mut azimuth = [[0.0; OFFSETS]; LOBES - 1];
+        let mut attenuation = [[[0.0; OFFSETS]; 3]; LOBES];
+        for k in 0..OFFSETS {
+            let h = STRATA[k] + place * (STRATA[k + 1] - STRATA[k]);
+            let part = 0.5 * (STRATA[k + 1] - STRATA[k]);
+            let (attenuations, sin_gamma_t) = attenuations(absorption, sin_theta, cos_theta, h);
+            let azimuths = azimuths(h, sin_gamma_t);
+            for lobe in 0..LOBES - 1 {
+                azimuth[lobe][k] = azimuths[lobe];
+            }
+            for lobe in 0..LOBES {
+                for channel in 0..3 {
+                    attenuation[lobe][channel][k] = attenuations[lobe][channel] * part;
+                }
+            }
+        }
+        let peaks =
+            std::array::from_fn(|lobe| AzimuthalPeaks { azimuth: azimuth[lobe], attenuation: attenuation[lobe] });
+        (peaks, attenuation.map(|channels| Vec3::from(channels.map(sum))))
+    }
+}
+
+/// The value of all lobes in a direction, eight offsets at a time.
+struct Evaluation<'a> {
+    bsdf: &'a FibreBsdf<'a>,
+    sin_theta: f32,
+    cos_theta: f32,
+    azimuth: f32,
+}
+
+impl SimdTask for Evaluation<'_> {
+    type Output = Vec3;
+
+    #[inline(always)]
+    fn run(self, _: Option<Avx2>) -> Vec3 {
+        let Evaluation { bsdf: FibreBsdf { fibre, outgoing, peaks, attenuation, .. }, sin_theta, cos_theta, azimuth } =
+            self;
+        let mut along = [0.0; LOBES];
+        for lobe in 0..LOBES {
+            let (sin_o, cos_o) = outgoing[lobe];
+            along[lobe] = fibre.longitudinal[lobe].density(sin_theta, cos_theta, sin_o, cos_o);
+        }
+        let mut values = [[0.0; OFFSETS]; 3];
+        for (peaks, along) in peaks.iter().zip(along) {
+            for k in 0..OFFSETS {
+                let density = fibre.azimuthal.density(azimuth - peaks.azimuth[k]) * along;
+                for channel in 0..3 {
+                    values[channel][k] += peaks.attenuation[channel][k] * density;
+                }
+            }
+        }
+        Vec3::from(values.map(sum)) + attenuation[LOBES - 1] * (along[LOBES - 1] / TAU)
+    }
+}
+
+/// Returns the sum of values, by halves.
+#[inline(always)]
+fn sum(values: [f32; OFFSETS]) -> f32 {
+    let fours: [f32; 4] = std::array::from_fn(|k| values[k] + values[k + 4]);
+    (fours[0] + fours[2]) + (fours[1] + fours[3])
+}
+
 /// Returns the azimuths of R, TT and TRT that the cylinder's surface would give at an offset, from the sine of the
 /// azimuth of the ray inside of it.
+#[inline(always)]
 fn azimuths(h: f32, sin_gamma_t: f32) -> [f32; LOBES - 1] {
-    let (gamma_o, gamma_t) = (h.clamp(-1.0, 1.0).asin(), sin_gamma_t.clamp(-1.0, 1.0).asin());
+    let (gamma_o, gamma_t) = (FRAC_PI_2 - approx::acos(h), FRAC_PI_2 - approx::acos(sin_gamma_t));
     [0.0, 1.0, 2.0].map(|p| 2.0 * p * gamma_t - 2.0 * gamma_o + p * PI)
 }
 
 /// Returns the attenuation of each lobe, and the sine of the azimuth of the ray inside of the fibre. The fourth lobe is
 /// the geometric series of all internal reflections.
+#[inline(always)]
 fn attenuations(absorption: Vec3, sin_theta: f32, cos_theta: f32, h: f32) -> ([Vec3; LOBES], f32) {
     // Refract the ray; the azimuth has the modified index of refraction of the ray's projection
-    let cos_theta_t = safe_sqrt(1.0 - (sin_theta / IOR).powi(2));
+    let cos_theta_t = safe_sqrt(1.0 - sin_theta * sin_theta / (IOR * IOR));
     let projected_ior = safe_sqrt(IOR * IOR - sin_theta * sin_theta) / cos_theta.max(1e-6);
     let sin_gamma_t = h / projected_ior;
     let cos_gamma_t = safe_sqrt(1.0 - sin_gamma_t * sin_gamma_t);
     // Absorb light on one way through the fibre
-    let transmittance = (-absorption * (2.0 * cos_gamma_t / cos_theta_t)).exp();
+    let length = 2.0 * cos_gamma_t / cos_theta_t;
+    let transmittance = Vec3::from((-absorption * length).to_array().map(approx::exp));
     // Divide it among the lobes
     let reflectance = fresnel::dielectric(cos_theta * safe_sqrt(1.0 - h * h), IOR);
-    let straight = transmittance * (1.0 - reflectance).powi(2);
+    let straight = transmittance * ((1.0 - reflectance) * (1.0 - reflectance));
     let reflected = straight * transmittance * reflectance;
     let others =
         reflected * transmittance * reflectance / (Vec3::ONE - transmittance * reflectance).max(Vec3::splat(1e-6));
@@ -256,11 +314,12 @@ impl Longitudinal {
     }
 
     /// Returns the density for the incident and the tilted outgoing longitude.
+    #[inline(always)]
     fn density(&self, sin_i: f32, cos_i: f32, sin_o: f32, cos_o: f32) -> f32 {
         let a = cos_i * cos_o * self.inverse_variance;
         // Without overflow: the factor e^a of the Bessel function is in the exponent.
         let exponent = (cos_i * cos_o - sin_i * sin_o - 1.0) * self.inverse_variance;
-        scaled_bessel_i0(a) * exponent.exp() * self.scale
+        scaled_bessel_i0(a) * approx::exp(exponent) * self.scale
     }
 
     /// Samples sine and cosine of the incident longitude (d'Eon 2013, "Importance Sampling for Physically-Based Hair
@@ -279,20 +338,25 @@ impl Longitudinal {
 #[derive(Clone, Copy, Debug)]
 struct TrimmedLogistic {
     scale: f32,
+    inverse_scale: f32,
+    /// 1 / (scale (1 - 2 low)).
+    norm: f32,
     /// Cumulative density of the untrimmed distribution at -pi.
     low: f32,
 }
 
 impl TrimmedLogistic {
     fn new(scale: f32) -> Self {
-        TrimmedLogistic { scale, low: 1.0 / (1.0 + (PI / scale).exp()) }
+        let low = 1.0 / (1.0 + (PI / scale).exp());
+        TrimmedLogistic { scale, inverse_scale: 1.0 / scale, norm: 1.0 / (scale * (1.0 - 2.0 * low)), low }
     }
 
     /// Returns the density at any angle, wrapped to -pi to pi.
+    #[inline(always)]
     fn density(&self, angle: f32) -> f32 {
-        let wrapped = angle - TAU * (angle / TAU).round();
-        let e = (-wrapped.abs() / self.scale).exp();
-        e / (self.scale * (1.0 + e) * (1.0 + e) * (1.0 - 2.0 * self.low))
+        let wrapped = angle - TAU * approx::round(angle * (1.0 / TAU));
+        let e = approx::exp(-wrapped.abs() * self.inverse_scale);
+        self.norm * e / ((1.0 + e) * (1.0 + e))
     }
 
     /// Samples an angle.
@@ -302,26 +366,32 @@ impl TrimmedLogistic {
     }
 }
 
-/// Returns the modified Bessel function I0(x) e^-x for x >= 0, within 2e-7 (Abramowitz and Stegun 1964, 9.8.1 and 9.8.2).
+/// Returns the modified Bessel function I0(x) e^-x for x >= 0, within 5e-7 (Abramowitz and Stegun 1964, 9.8.1 and 9.8.2).
+#[inline(always)]
 fn scaled_bessel_i0(x: f32) -> f32 {
-    let horner = |t: f32, coefficients: &[f32]| coefficients.iter().rev().fold(0.0, |sum, c| sum * t + c);
-    if x < 3.75 {
-        let t = (x / 3.75) * (x / 3.75);
-        horner(t, &[1.0, 3.515_622_9, 3.089_942_4, 1.206_749_2, 0.265_973_2, 0.036_076_8, 0.004_581_3]) * (-x).exp()
-    } else {
-        let coefficients = [
-            0.398_942_3,
-            0.013_285_92,
-            0.002_253_19,
-            -0.001_575_65,
-            0.009_162_81,
-            -0.020_577_06,
-            0.026_355_37,
-            -0.016_476_33,
-            0.003_923_77,
-        ];
-        horner(3.75 / x, &coefficients) / x.sqrt()
-    }
+    const NEAR: [f32; 7] = [1.0, 3.515_622_9, 3.089_942_4, 1.206_749_2, 0.265_973_2, 0.036_076_8, 0.004_581_3];
+    const FAR: [f32; 9] = [
+        0.398_942_3,
+        0.013_285_92,
+        0.002_253_19,
+        -0.001_575_65,
+        0.009_162_81,
+        -0.020_577_06,
+        0.026_355_37,
+        -0.016_476_33,
+        0.003_923_77,
+    ];
+    let t = (x / 3.75) * (x / 3.75);
+    let near = horner(t, &NEAR) * approx::exp(-x);
+    let far = horner(3.75 / x, &FAR) / x.sqrt();
+    // A choice of values, not of ways: loops over lobes vectorize
+    if x < 3.75 { near } else { far }
+}
+
+/// Returns a polynomial of these coefficients, the constant first.
+#[inline(always)]
+fn horner<const N: usize>(t: f32, coefficients: &[f32; N]) -> f32 {
+    coefficients.iter().rev().fold(0.0, |sum, c| sum * t + c)
 }
 
 #[cfg(test)]

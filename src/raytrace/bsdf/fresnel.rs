@@ -5,19 +5,19 @@ use glam::Vec3;
 
 /// Returns the reflected amplitudes (s, p) of a dielectric interface; `eta` is the index of the transmitted side over
 /// that of the incident side. Both are 1 under total internal reflection, whose phase is left out.
+#[inline(always)]
 pub fn amplitudes(cos_incident: f32, eta: f32) -> (f32, f32) {
     let cos_i = cos_incident.clamp(0.0, 1.0);
     let sin2_t = (1.0 - cos_i * cos_i) / (eta * eta);
-    if sin2_t >= 1.0 {
-        return (1.0, 1.0);
-    }
     let cos_t = safe_sqrt(1.0 - sin2_t);
     let s = (cos_i - eta * cos_t) / (cos_i + eta * cos_t).max(f32::MIN_POSITIVE);
     let p = (eta * cos_i - cos_t) / (eta * cos_i + cos_t).max(f32::MIN_POSITIVE);
-    (s, p)
+    // A choice of values, not of ways: loops over lanes vectorize
+    if sin2_t >= 1.0 { (1.0, 1.0) } else { (s, p) }
 }
 
 /// Returns the reflectance of a dielectric interface for unpolarised light: the mean of both polarisations.
+#[inline(always)]
 pub fn dielectric(cos_incident: f32, eta: f32) -> f32 {
     let (s, p) = amplitudes(cos_incident, eta);
     0.5 * (s * s + p * p)

@@ -42,6 +42,8 @@ pub struct TracedMaterial {
     pub(super) mapped_gloss: Option<MappedGloss>,
     /// Factor of the tilt of the normal map.
     pub normal_scale: f32,
+    /// The normal texture is below the gloss, which has the normal of the mesh.
+    pub smooth_gloss: bool,
     /// Parts of the surface that are not there. Glass is all there.
     pub coverage: Alpha,
     /// The fibre that strands of the material are.
@@ -87,6 +89,7 @@ impl TracedMaterial {
             tables,
             mapped_gloss: None,
             normal_scale: material.textures.normal_scale,
+            smooth_gloss: material.textures.smooth_gloss,
             coverage: if clear > 0.0 { Alpha::Opaque } else { material.alpha },
             fibre: material.fibre.as_ref().map(TracedFibre::new),
             layers,

@@ -100,6 +100,8 @@ fn texture_rows(ui: &mut Ui, material: &mut Material) -> Option<TextureSlot> {
             "How strong the relief of the normal map is; 1 is as drawn, less than 0 turns it inside out",
             |ui| NumberField::new(0.02, -4.0, 4.0, 2, "").ui(ui, &mut material.textures.normal_scale),
         );
+        ui.checkbox(&mut material.textures.smooth_gloss, "Smooth gloss")
+            .on_hover_text("The gloss lies over the relief and does not follow it, as lacquer and the cornea do");
     }
     if material.transmission == 0.0 {
         alpha_rows(ui, &mut material.alpha);
