@@ -32,7 +32,7 @@ pub fn atan2(y: f32, x: f32) -> f32 {
     let t = low / high.max(f32::MIN_POSITIVE);
     let t2 = t * t;
     let high_terms = -0.075_289_64 + t2 * (0.042_909_614 + t2 * (-0.016_165_737 + t2 * 0.002_866_225_7));
-    let low_terms = -0.333_331_45 + t2 * (0.199_935_51 + t2 * (-0.142_088_99 + t2 * (0.106_562_64 + t2 * high_terms)));
+    let low_terms = -0.333_331_45 + t2 * (0.199_935_51 + t2 * (-0.142_089 + t2 * (0.106_562_64 + t2 * high_terms)));
     let eighth = t + t * t2 * low_terms;
     let quarter = if across > along { FRAC_PI_2 - eighth } else { eighth };
     let half = if x < 0.0 { PI - quarter } else { quarter };

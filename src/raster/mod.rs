@@ -9,7 +9,7 @@
 //!    rows ([`gbuffer_row`]) and one evaluation of the fragment shader per pixel ([`shade`], [`material`], [`lights`]).
 //!
 //! Inner loops are branch-free code for one pixel that runs eight pixels wide: see [`crate::math::simd`] and
-//! [`approx`]. Pictures have the exposure and the scene-linear units of every other rung.
+//! [`crate::math::approx`]. Pictures have the exposure and the scene-linear units of every other rung.
 //!
 //! Models visibility and direct light. Leaves out shadows, bounces and reflections other than that of a uniform
 //! surround; panels shine from their centre, with a term that is exact on the axis of a disc at any distance; emitters

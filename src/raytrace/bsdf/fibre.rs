@@ -241,17 +241,16 @@ impl SimdTask for Evaluation<'_> {
     fn run(self, _: Option<Avx2>) -> Vec3 {
         let Evaluation { bsdf: FibreBsdf { fibre, outgoing, peaks, attenuation, .. }, sin_theta, cos_theta, azimuth } =
             self;
-        let mut along = [0.0; LOBES];
-        for lobe in 0..LOBES {
+        let along: [f32; LOBES] = std::array::from_fn(|lobe| {
             let (sin_o, cos_o) = outgoing[lobe];
-            along[lobe] = fibre.longitudinal[lobe].density(sin_theta, cos_theta, sin_o, cos_o);
-        }
+            fibre.longitudinal[lobe].density(sin_theta, cos_theta, sin_o, cos_o)
+        });
         let mut values = [[0.0; OFFSETS]; 3];
         for (peaks, along) in peaks.iter().zip(along) {
-            for k in 0..OFFSETS {
-                let density = fibre.azimuthal.density(azimuth - peaks.azimuth[k]) * along;
-                for channel in 0..3 {
-                    values[channel][k] += peaks.attenuation[channel][k] * density;
+            let densities = peaks.azimuth.map(|mean| fibre.azimuthal.density(azimuth - mean) * along);
+            for (values, attenuation) in values.iter_mut().zip(&peaks.attenuation) {
+                for ((value, attenuation), density) in values.iter_mut().zip(attenuation).zip(densities) {
+                    *value += attenuation * density;
                 }
             }
         }
