@@ -8,7 +8,7 @@ use super::patch::Patch;
 use super::posed_body::PosedBody;
 use super::regions::{Clothes, Edges, Garment};
 use super::skin_colors::{NO_SKIN, skin_colors};
-use super::subdivide::{QuadMesh, Surface};
+use super::subdivide::{QuadMesh, SubdivisionSurface};
 use crate::scene::{Expression, Figure, FigureMeshes, Mesh, MeshPart};
 use glam::{Affine3A, Vec2, Vec3};
 use std::sync::Arc;
@@ -42,7 +42,7 @@ pub fn build(data: &BodyData, figure: &Figure) -> FigureMeshes {
     };
     let skin = || {
         let (mut coarse, clothes) = rayon::join(
-            || Surface::new(cage(data, figure, &body)).subdivided(),
+            || SubdivisionSurface::new(cage(data, figure, &body)).subdivided(),
             || dress(data, figure, &body, garment_part),
         );
         coarse.append(&clothes);

@@ -6,7 +6,7 @@
 //! vertex. Cloth does not collide with itself. A few steps are enough: clothes move by centimetres.
 
 use super::random::Random;
-use super::subdivide::{Edges, Surface};
+use super::subdivide::{Edges, SubdivisionSurface};
 use glam::{Vec3, Vec3A};
 
 /// Time steps, and iterations over all constraints in each.
@@ -40,7 +40,7 @@ const NOISE_M: f32 = 0.001;
 #[derive(Clone, Copy, Debug)]
 pub struct Cloth<'a> {
     /// The garment as it fits the posed body.
-    pub fitted: &'a Surface,
+    pub fitted: &'a SubdivisionSurface,
     /// The positions of its vertices on the body at rest, metres.
     pub rest: &'a [Vec3],
     /// How freely each vertex moves: 0 where it is held, 1 where nothing holds it.
@@ -61,7 +61,7 @@ struct DistanceConstraint {
 impl Cloth<'_> {
     /// Returns the positions of the vertices after the last step, metres.
     pub fn draped(&self) -> Vec<Vec3> {
-        let Surface { mesh, edges } = self.fitted;
+        let SubdivisionSurface { mesh, edges } = self.fitted;
         let fitted: Vec<Vec3A> = mesh.positions.iter().map(|p| (*p).into()).collect();
         let normals: Vec<Vec3A> = mesh.normals().into_iter().map(Vec3A::from).collect();
         let neighbors = neighbors(edges, fitted.len());
@@ -222,7 +222,7 @@ mod tests {
     const WIDTH_M: f32 = 0.3;
 
     /// A level sheet whose outside is above, or below, held at two of its edges.
-    fn sheet(is_upright: bool) -> (Surface, Vec<f32>) {
+    fn sheet(is_upright: bool) -> (SubdivisionSurface, Vec<f32>) {
         let side = SQUARES + 1;
         let at = |v: u32| Vec2::new((v % side) as f32, (v / side) as f32) / SQUARES as f32;
         let corners = |v: u32| [v, v + side, v + side + 1, v + 1];
@@ -234,7 +234,7 @@ mod tests {
             ..QuadMesh::default()
         };
         let mobility = (0..side * side).map(|v| f32::from(at(v).x > 0.0 && at(v).x < 1.0)).collect();
-        (Surface::new(mesh), mobility)
+        (SubdivisionSurface::new(mesh), mobility)
     }
 
     /// A sheet of a length (1 + e) L between two bars at a distance L hangs in a shallow arc of the depth L sqrt(3 e / 8).
@@ -266,7 +266,7 @@ mod tests {
 
     #[test]
     fn a_line_through_a_vertex_joins_the_ends_of_two_edges() {
-        let (Surface { mesh, edges }, _) = sheet(true);
+        let (SubdivisionSurface { mesh, edges }, _) = sheet(true);
         let lines = lines(&mesh.quads, &neighbors(&edges, mesh.positions.len()));
         assert_eq!(lines.len() as u32, 2 * (SQUARES - 1) * (SQUARES - 1), "two at each inner vertex");
         for (vertex, [a, b]) in lines {

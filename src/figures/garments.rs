@@ -6,7 +6,7 @@ use super::patch::Patch;
 use super::posed_body::PosedBody;
 use super::regions::{Clothes, Edges, Garment};
 use super::skin_colors::NO_SKIN;
-use super::subdivide::{QuadMesh, Surface};
+use super::subdivide::{QuadMesh, SubdivisionSurface};
 use crate::scene::{Bottom, Figure, Top};
 use glam::Vec3;
 use rayon::prelude::*;
@@ -18,10 +18,15 @@ const STRAP_M: f32 = 0.002;
 const FREE_M: f32 = 0.04;
 
 /// Returns the garments of a figure in its pose, subdivided once, with the part of each.
-pub fn dress(data: &BodyData, figure: &Figure, body: &PosedBody, part: impl Fn(Garment) -> u8 + Sync) -> Surface {
+pub fn dress(
+    data: &BodyData,
+    figure: &Figure,
+    body: &PosedBody,
+    part: impl Fn(Garment) -> u8 + Sync,
+) -> SubdivisionSurface {
     let worn = |garment: &Garment| {
         let fitted = |positions| fitted(data, figure, body, *garment, positions);
-        let coarse = Surface::new(fitted(&body.positions));
+        let coarse = SubdivisionSurface::new(fitted(&body.positions));
         let mut surface = coarse.subdivided();
         if *garment != Garment::Shoe {
             let rest = &coarse.subdivided_positions(&fitted(&body.rest).positions);
@@ -33,7 +38,7 @@ pub fn dress(data: &BodyData, figure: &Figure, body: &PosedBody, part: impl Fn(G
         surface.mesh.values.fill(NO_SKIN);
         surface
     };
-    let mut clothes = Surface::new(QuadMesh::default());
+    let mut clothes = SubdivisionSurface::new(QuadMesh::default());
     for surface in [Garment::Top, Garment::Bottom, Garment::Shoe].par_iter().map(worn).collect::<Vec<_>>() {
         clothes.append(&surface);
     }
@@ -83,7 +88,7 @@ mod tests {
             let body = PosedBody::new(data, &figure);
             for garment in [Garment::Top, Garment::Bottom] {
                 let fitted = fitted(data, &figure, &body, garment, &body.positions);
-                let fitted = Surface::new(fitted).subdivided().mesh;
+                let fitted = SubdivisionSurface::new(fitted).subdivided().mesh;
                 let draped = dress(data, &figure, &body, |other| u8::from(other == garment)).mesh;
                 let quads =
                     draped.quads.iter().zip(&draped.parts).filter(|(_, part)| **part == 1).map(|(quad, _)| *quad);

@@ -63,29 +63,29 @@ impl QuadMesh {
 
 /// A mesh with its edges: those of a subdivided mesh follow from those of the mesh, without a search.
 #[derive(Clone, Debug)]
-pub struct Surface {
+pub struct SubdivisionSurface {
     /// The mesh.
     pub mesh: QuadMesh,
     /// Its edges.
     pub edges: Edges,
 }
 
-impl Surface {
+impl SubdivisionSurface {
     /// Finds the edges of a mesh.
-    pub fn new(mesh: QuadMesh) -> Surface {
+    pub fn new(mesh: QuadMesh) -> SubdivisionSurface {
         let edges = Edges::new(&mesh);
-        Surface { mesh, edges }
+        SubdivisionSurface { mesh, edges }
     }
 
     /// Appends another surface.
-    pub fn append(&mut self, other: &Surface) {
+    pub fn append(&mut self, other: &SubdivisionSurface) {
         self.edges.append(&other.edges, self.mesh.positions.len() as u32);
         self.mesh.append(&other.mesh);
     }
 
     /// Returns the surface with every quad split into four, smoothed.
-    pub fn subdivided(&self) -> Surface {
-        let Surface { mesh, edges } = self;
+    pub fn subdivided(&self) -> SubdivisionSurface {
+        let SubdivisionSurface { mesh, edges } = self;
         let (vertex_count, edge_count) = (mesh.positions.len() as u32, edges.edges.len() as u32);
         // Four quads for each, one at each corner
         let split = |(index, quad): (usize, &[u32; 4])| {
@@ -107,7 +107,7 @@ impl Surface {
             parts: mesh.parts.iter().flat_map(|&part| [part; 4]).collect(),
             values: self.split_values(),
         };
-        Surface { mesh: subdivided, edges: edges.subdivided(mesh) }
+        SubdivisionSurface { mesh: subdivided, edges: edges.subdivided(mesh) }
     }
 
     /// Returns the positions of the subdivided surface's vertices if this one's are at `positions`: those of the old
@@ -311,11 +311,11 @@ impl Edges {
 mod tests {
     use super::*;
 
-    fn cube() -> Surface {
+    fn cube() -> SubdivisionSurface {
         let corner = |i: usize| Vec3::new((i & 1) as f32, (i >> 1 & 1) as f32, (i >> 2) as f32) * 2.0 - Vec3::ONE;
         let quads = vec![[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
         let count = quads.len();
-        Surface::new(QuadMesh {
+        SubdivisionSurface::new(QuadMesh {
             positions: (0..8).map(corner).collect(),
             quads,
             uvs: vec![[Vec2::ZERO, Vec2::X, Vec2::ONE, Vec2::Y]; count],
@@ -363,13 +363,13 @@ mod tests {
             parts: vec![0, 1],
             ..QuadMesh::default()
         };
-        let once = Surface::new(square).subdivided().mesh;
+        let once = SubdivisionSurface::new(square).subdivided().mesh;
         assert_eq!(once.positions[1], Vec3::new(1.0, 0.0, 0.0), "on a straight border a vertex stays");
         assert_eq!(once.positions[0], Vec3::new(1.0 / 8.0, 1.0 / 8.0, 0.0));
         assert_eq!(once.parts, [0, 0, 0, 0, 1, 1, 1, 1]);
     }
     /// The edges as sets of vertices, with the vertices of the quads beside each.
-    fn described(surface: &Surface) -> Vec<([u32; 2], Vec<[u32; 4]>)> {
+    fn described(surface: &SubdivisionSurface) -> Vec<([u32; 2], Vec<[u32; 4]>)> {
         let sorted = |mut ends: [u32; 2]| {
             ends.sort_unstable();
             ends
@@ -388,7 +388,7 @@ mod tests {
     #[test]
     fn derived_edges_are_those_that_a_search_finds() {
         let mut both = cube();
-        both.append(&Surface::new(QuadMesh {
+        both.append(&SubdivisionSurface::new(QuadMesh {
             positions: (0..6).map(|i| Vec3::new((i % 3) as f32, (i / 3) as f32, 0.0)).collect(),
             quads: vec![[0, 1, 4, 3], [1, 2, 5, 4]],
             uvs: vec![[Vec2::ZERO; 4]; 2],
@@ -396,7 +396,7 @@ mod tests {
             ..QuadMesh::default()
         }));
         for surface in [both.clone(), both.subdivided(), both.subdivided().subdivided()] {
-            assert_eq!(described(&surface), described(&Surface::new(surface.mesh.clone())));
+            assert_eq!(described(&surface), described(&SubdivisionSurface::new(surface.mesh.clone())));
             for (quad, sides) in surface.mesh.quads.iter().zip(&surface.edges.of_quad) {
                 for k in 0..4 {
                     let ends = surface.edges.edges[sides[k] as usize].ends;

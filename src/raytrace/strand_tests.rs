@@ -249,7 +249,8 @@ fn thinned_hair_is_as_bright_as_all_of_it() {
         ..Light::new(panel, Output::Lumens(3000.0))
     };
     scene.lights = vec![key];
-    let settings = Settings { width: 24, height: 16, spp: 256, ..Settings::default() };
+    // Its noise is about a per cent
+    let settings = Settings { width: 24, height: 16, spp: 1024, ..Settings::default() };
     let purpose = Purpose { picture: Some((settings.width, settings.height)), ..Purpose::default() };
     let all = prepare(&scene, &assets).unwrap();
     let thinned = prepare_for(&scene, &assets, purpose, &GeometryCache::default()).unwrap();

@@ -2,7 +2,7 @@
 
 use super::hair_body::HairBody;
 use crate::figures::patch::Patch;
-use crate::figures::subdivide::{QuadMesh, Surface};
+use crate::figures::subdivide::{QuadMesh, SubdivisionSurface};
 use crate::math::atan2;
 use glam::{Vec2, Vec3};
 use std::f32::consts::{PI, TAU};
@@ -36,7 +36,7 @@ impl HeadSurface {
         let patch = Patch::new(body.data, "body", body.positions, &wanted);
         let skin = QuadMesh { positions: patch.positions, quads: patch.quads, uvs: patch.uvs, ..QuadMesh::default() };
         let mut surface = HeadSurface { centre, radii: vec![0.0; ROWS * COLUMNS], greatest: 0.0 };
-        for position in Surface::new(skin).subdivided().subdivided().mesh.positions {
+        for position in SubdivisionSurface::new(skin).subdivided().subdivided().mesh.positions {
             let offset = to_head.transform_point3(position) - centre;
             let cell = cell_of(offset).round().as_uvec2();
             let index = (cell.y as usize).min(ROWS - 1) * COLUMNS + cell.x as usize % COLUMNS;

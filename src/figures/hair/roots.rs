@@ -3,7 +3,7 @@
 use super::hair_body::HairBody;
 use crate::figures::patch::Patch;
 use crate::figures::random::Random;
-use crate::figures::subdivide::{QuadMesh, Surface};
+use crate::figures::subdivide::{QuadMesh, SubdivisionSurface};
 use glam::Vec3;
 use rayon::prelude::*;
 
@@ -30,7 +30,7 @@ pub fn scatter(body: &HairBody, count: usize, seed: u32, density: &(dyn Fn(Vec3)
     let wanted = |quad: &[u16; 4]| quad.iter().any(|&v| is_dense[usize::from(v)]);
     let Patch { positions, quads, uvs, sources } = Patch::new(body.data, "body", body.positions, &wanted);
     let base: Vec<Vec3> = sources.iter().map(|&v| body.data.positions[usize::from(v)]).collect();
-    let coarse = Surface::new(QuadMesh { positions, quads, uvs, ..QuadMesh::default() });
+    let coarse = SubdivisionSurface::new(QuadMesh { positions, quads, uvs, ..QuadMesh::default() });
     let middle = coarse.subdivided();
     let base = middle.subdivided_positions(&coarse.subdivided_positions(&base));
     let skin = middle.subdivided().mesh;
