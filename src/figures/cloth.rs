@@ -31,7 +31,7 @@ const FLATNESS: f32 = 0.98;
 const SINK_M: f32 = 0.004;
 /// Part of a movement along the body that friction takes away in a step.
 const FRICTION: f32 = 0.8;
-/// Constraints between two that may share a vertex.
+/// Distance in the list between constraints that may share a vertex.
 const APART: usize = 8;
 /// Standard deviation of the noise on the start, metres: without it smooth cloth would not buckle.
 const NOISE_M: f32 = 0.001;
@@ -145,8 +145,8 @@ impl DistanceConstraint {
     }
 }
 
-/// Returns items in an order in which those that were neighbours lie [`APART`] from each other: constraints in a row then
-/// have no vertex in common, and the processor works on several at a time.
+/// Returns items in an order in which those that were neighbours lie [`APART`] from each other. Constraints in a row then
+/// have no vertex in common, so that the CPU overlaps their computation.
 fn interleaved<T: Copy>(items: &[T]) -> Vec<T> {
     let rows = items.len().div_ceil(APART).max(1);
     (0..rows).flat_map(|row| items.iter().skip(row).step_by(rows).copied()).collect()

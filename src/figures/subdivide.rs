@@ -222,7 +222,7 @@ impl Ring {
 /// The edges of a mesh.
 #[derive(Clone, Debug)]
 pub struct Edges {
-    /// All edges, in the order of their vertices.
+    /// All edges.
     pub edges: Vec<Edge>,
     /// Edges of each quad; edge `k` goes from corner `k` to the next.
     of_quad: Vec<[u32; 4]>,

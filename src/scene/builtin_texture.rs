@@ -7,7 +7,7 @@ pub enum BuiltinTexture {
     SkinGloss,
     /// Fine relief of skin, a square of [`BuiltinTexture::RELIEF_M`] that repeats, for [`super::TextureSlot::Normal`].
     SkinRelief,
-    /// Relief of the iris, about the eye and from its edge to the pupil, for [`super::TextureSlot::Normal`].
+    /// Relief of the iris for [`super::TextureSlot::Normal`]: U runs round the eye, V from its edge to the pupil.
     IrisRelief,
 }
 

@@ -136,15 +136,19 @@ fn square() -> Mesh {
     }
 }
 
+/// Adds a normal map of one tilt, 0.48 along +U and 0.36 along +V, and returns it with the tilt.
+fn tilted_map(assets: &mut Assets) -> (TextureRef, Vec3) {
+    let code = |value: f32| ((value * 0.5 + 0.5) * 255.0).round() as u8;
+    let (map, tilt) = (TextureRef::file("normals.png"), Vec3::new(0.48, 0.36, 0.8));
+    assets.insert_texture(map.clone(), Arc::new(Texture::opaque(1, 1, vec![tilt.to_array().map(code)])));
+    (map, tilt)
+}
+
 #[test]
 fn a_normal_map_of_one_tilt_is_a_mesh_with_tilted_normals_in_every_renderer() {
     let Some(mut renderer) = shared_renderer() else { return };
-    // 0.48 along +U and 0.36 along +V
-    let code = |value: f32| ((value * 0.5 + 0.5) * 255.0).round() as u8;
-    let tilt = Vec3::new(0.48, 0.36, 0.8);
     let mut assets = Assets::default();
-    let map = TextureRef::file("normals.png");
-    assets.insert_texture(map.clone(), Arc::new(Texture::opaque(1, 1, vec![tilt.to_array().map(code)])));
+    let (map, tilt) = tilted_map(&mut assets);
     let plain = Material { roughness: 0.5, ..Material::default() };
     for (turn, mirror) in [(0.0, 1.0), (90.0, 1.0), (30.0, -1.0)] {
         // The picture turned and mirrored on the square: U and V run elsewhere
@@ -172,11 +176,8 @@ fn a_normal_map_of_one_tilt_is_a_mesh_with_tilted_normals_in_every_renderer() {
 #[test]
 fn a_smooth_gloss_lies_over_the_relief_of_its_normal_map() {
     let Some(mut renderer) = shared_renderer() else { return };
-    let code = |value: f32| ((value * 0.5 + 0.5) * 255.0).round() as u8;
-    let tilt = Vec3::new(0.48, 0.36, 0.8);
     let mut assets = Assets::default();
-    let map = TextureRef::file("normals.png");
-    assets.insert_texture(map.clone(), Arc::new(Texture::opaque(1, 1, vec![tilt.to_array().map(code)])));
+    let (map, tilt) = tilted_map(&mut assets);
     // The gloss alone has the normal of the mesh, what is below it that of the map
     let gloss = Material { base_color: [0.0; 3], roughness: 0.3, ..Material::default() };
     let matte = Material { ior: 1.0, ..Material::default() };

@@ -55,11 +55,11 @@ pub fn grow_head(body: &HairBody, figure: &Figure, style: &Style, strands: &mut 
         points: field.grow(root, Random::new(figure.seed, 100 + index as u32)),
     };
     let guides: Vec<Guide> = roots.par_iter().step_by(every).enumerate().map(guide).collect();
-    let near = GuideRoots::new(&guides);
+    let guide_roots = GuideRoots::new(&guides);
     let steps = steps_of(style);
     let strand = |(index, root): (usize, &Root)| {
         let random = Random::new(figure.seed, 100_000 + index as u32);
-        let points = follow(root, (&guides, &near), &steps, &field, random);
+        let points = follow(root, (&guides, &guide_roots), &steps, &field, random);
         points.into_iter().map(|(p, radius_m)| (body.head.transform_point3(p), radius_m)).collect::<Vec<_>>()
     };
     let grown: Vec<Vec<(Vec3, f32)>> = roots.par_iter().enumerate().map(strand).collect();
@@ -254,7 +254,7 @@ impl GuideRoots {
         for (block, [x, y, z]) in self.0.iter().enumerate() {
             let distance = |i: usize| Vec3::new(x[i], y[i], z[i]).distance_squared(position);
             let distances: [f32; LANES] = std::array::from_fn(distance);
-            // Few blocks have a guide that is nearer than those before
+            // Skip blocks without a guide nearer than those found
             let least = distances.iter().fold(f32::INFINITY, |least, d| if *d < least { *d } else { least });
             if least >= near[2].0 {
                 continue;
@@ -270,16 +270,16 @@ impl GuideRoots {
     }
 }
 
-/// A point on the way of all strands of a style.
+/// A point of the strands of a style, the same on each.
 #[derive(Clone, Copy, Debug)]
 struct StrandStep {
     /// Part of the length, from the root.
     along: f32,
-    /// How much strands are drawn to the first guide, 0 to 1.
+    /// Weight of the first guide against the mean of all near ones, 0 to 1.
     gather: f32,
 }
 
-/// Returns as many points as length and curls of a style need.
+/// Returns the points of every strand of a style: as many as its length and its curls need.
 fn steps_of(style: &Style) -> Vec<StrandStep> {
     let length = style.length_m[0].max(style.length_m[1]);
     let curls = length * style.turns_per_m * 7.0;

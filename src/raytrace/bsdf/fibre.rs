@@ -383,7 +383,7 @@ fn scaled_bessel_i0(x: f32) -> f32 {
     let t = (x / 3.75) * (x / 3.75);
     let near = horner(t, &NEAR) * approx::exp(-x);
     let far = horner(3.75 / x, &FAR) / x.sqrt();
-    // A choice of values, not of ways: loops over lobes vectorize
+    // Selected without a branch, so that loops over lobes vectorize
     if x < 3.75 { near } else { far }
 }
 

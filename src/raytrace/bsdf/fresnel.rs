@@ -12,7 +12,7 @@ pub fn amplitudes(cos_incident: f32, eta: f32) -> (f32, f32) {
     let cos_t = safe_sqrt(1.0 - sin2_t);
     let s = (cos_i - eta * cos_t) / (cos_i + eta * cos_t).max(f32::MIN_POSITIVE);
     let p = (eta * cos_i - cos_t) / (eta * cos_i + cos_t).max(f32::MIN_POSITIVE);
-    // A choice of values, not of ways: loops over lanes vectorize
+    // Selected without a branch, so that loops over lanes vectorize
     if sin2_t >= 1.0 { (1.0, 1.0) } else { (s, p) }
 }
 
