@@ -7,10 +7,12 @@ use crate::figures::random::Random;
 use crate::scene::{Figure, StrandPoint, Strands};
 use glam::Vec3;
 
+/// Inner end of a brow, metres from the middle of the face.
+const INNER_M: f32 = 0.0105;
 /// Hairs of both brows.
-const BROW_HAIRS: usize = 1100;
+const BROW_HAIRS: usize = 1000;
 /// Upper and lower lashes of an eye.
-const LASHES: [usize; 2] = [340, 70];
+const LASHES: [usize; 2] = [300, 48];
 
 /// Grows a beard: down and out of the skin.
 pub fn grow_beard(body: &HairBody, figure: &Figure, style: &Style, strands: &mut Strands) {
@@ -44,9 +46,12 @@ pub fn brow_density(place: Vec3) -> f32 {
     let x = place.x.abs();
     // The arch rises to two thirds of its length and falls to the tail.
     let middle = if x < 0.042 { 0.019 + 0.23 * (x - 0.012) } else { 0.0259 - 0.45 * (x - 0.042) };
-    let half = 0.0045 - 0.0026 * ((x - 0.03) / 0.028).clamp(0.0, 1.0);
-    let is_brow = (0.0115..0.0575).contains(&x) && place.z > -0.03;
-    if is_brow { (1.6 * (1.0 - (place.y - middle).abs() / half)).clamp(0.0, 1.0) } else { 0.0 }
+    // It begins thin and sparse beside the nose, is widest under the arch and thins out to the tail
+    let inner = ((x - INNER_M) / 0.012).clamp(0.0, 1.0);
+    let half = 0.0027 + 0.0015 * inner - 0.0024 * ((x - 0.03) / 0.028).clamp(0.0, 1.0);
+    let is_brow = (INNER_M..0.0575).contains(&x) && place.z > -0.03;
+    let fade = (0.15 + 1.6 * inner).min(1.0);
+    if is_brow { fade * (1.6 * (1.0 - (place.y - middle).abs() / half)).clamp(0.0, 1.0) } else { 0.0 }
 }
 
 /// Returns a short hair that leaves the skin and bends towards the comb.
@@ -113,7 +118,7 @@ fn lash(body: &HairBody, root: Vec3, eye: Vec3, is_upper: bool, length: f32, ran
     let mut points = Vec::with_capacity(STEPS + 1);
     for k in 0..=STEPS {
         let t = k as f32 / STEPS as f32;
-        let radius_m = if is_upper { 75e-6 } else { 50e-6 } * (1.0 - 0.8 * t);
+        let radius_m = if is_upper { 70e-6 } else { 32e-6 } * (1.0 - 0.8 * t);
         points.push(StrandPoint { position: body.head.transform_point3(position), radius_m });
         position += direction * length / STEPS as f32;
         direction = (direction + Vec3::Y * up * 0.22).normalize_or(Vec3::Z);

@@ -1,12 +1,12 @@
 //! Grows the hair of a head: guides that follow the comb, and strands between them.
 
 use super::hair_body::HairBody;
-use super::obstacles::{Obstacles, ShoulderSide};
+use super::obstacles::{OVER_CLOTHES_M, Obstacles, ShoulderSide};
 use super::roots::{Root, scatter};
 use super::style::{Comb, Style, scalp_density, sideburn_density};
 use crate::figures::random::Random;
 use crate::math::simd::LANES;
-use crate::math::sin_cos_turn;
+use crate::math::{atan2, sin_cos_turn};
 use crate::scene::{Figure, StrandPoint, Strands};
 use glam::{Quat, Vec3};
 use rayon::prelude::*;
@@ -146,9 +146,7 @@ impl CombField<'_> {
         let steps = STEPS * steps_per_segment;
         let step = length / steps as f32;
         let jitter = jitter * style.frizz;
-        // Hair before the ears falls over the chest.
-        let is_front = root.position.z > self.obstacles.skull_centre().z;
-        let side = if is_front { ShoulderSide::Front } else { ShoulderSide::Back };
+        let side = self.shoulder_side(root);
         let mut direction =
             (root.normal * style.lift + self.comb(root.position, root, root.normal) * (1.0 - style.lift) + jitter)
                 .normalize();
@@ -160,9 +158,7 @@ impl CombField<'_> {
             // The comb holds what lies on the head; below, hair falls.
             let held = 1.0 - self.obstacles.height_over_head(position) / HELD_M;
             let grip = style.grip * held.clamp(0.0, 1.0);
-            let pull = self.comb(position, root, outwards) * grip
-                + self.down * style.weight * (0.25 + along)
-                + self.gather(position) * style.gather;
+            let pull = self.comb(position, root, outwards) * grip + self.down * style.weight * (0.25 + along);
             direction = (direction + pull).normalize_or(self.down);
             // Hair lies on the hair below it: the volume builds up over the first centimetres.
             let margin = style.volume_m * (along * length / 0.03).min(1.0);
@@ -177,12 +173,10 @@ impl CombField<'_> {
         points
     }
 
-    /// Returns the horizontal pull of falling hair towards the nape: none above the ears, 1 below the jaw.
-    fn gather(&self, p: Vec3) -> Vec3 {
-        let nape = Vec3::new(0.0, p.y, self.obstacles.skull_centre().z);
-        let below = ((0.0 - p.y) / 0.09).clamp(0.0, 1.0);
-        let to_nape = nape - p;
-        to_nape.normalize_or_zero() * below * ((to_nape.length() - 0.05) / 0.05).clamp(0.0, 1.0)
+    /// Returns the side of the shoulders on which hair from a root falls: before the ears over the chest.
+    fn shoulder_side(&self, root: &Root) -> ShoulderSide {
+        let is_front = self.style.comb != Comb::ToTie && root.position.z > self.obstacles.skull_centre().z;
+        if is_front { ShoulderSide::Front } else { ShoulderSide::Back }
     }
 
     /// Returns a point of hair with a parting moved aside from the face, to the side where its root is combed.
@@ -322,10 +316,15 @@ fn follow(
         .filter(|(_, guide)| goes_along(guide))
         .collect();
     let sum: f32 = weights.iter().map(|(w, _)| w).sum();
-    let shorter = 1.0 - 0.25 * random.unit() * random.unit();
-    let phase = random.unit() * (1.0 - style.clumping);
+    let shorter = 1.0 - random.unit() * (0.25 * random.unit() + style.layering);
+    // Curls turn with their guide; waves turn together with those of neighbours, and further round the head
+    let of_curl = random.unit() * (1.0 - style.clumping) + (near[0].1 as f32 / TAU).fract();
+    let Vec3 { x, z, .. } = first.root.position - field.obstacles.skull_centre();
+    let of_wave = atan2(x.abs(), z) / TAU;
+    let phase = of_curl * style.phase_scatter + of_wave * (1.0 - style.phase_scatter);
     let spread = Vec3::new(random.bell(), random.bell(), random.bell()) * style.frizz * 0.05 * style.length_m[0];
     let offset = root.position - first.root.position;
+    let side = field.shoulder_side(&first.root);
     let mut points = Vec::with_capacity(steps.len());
     for (k, &StrandStep { along, gather }) in steps.iter().enumerate() {
         let at = along * shorter * STEPS as f32;
@@ -337,14 +336,18 @@ fn follow(
         if style.curl_m > 0.0 {
             let tangent = (first.points[low + 1] - first.points[low]).normalize_or(Vec3::NEG_Y);
             let length = at / STEPS as f32 * style.length_m[0];
-            let turns = style.turns_per_m * length + phase + near[0].1 as f32 / TAU;
+            let turns = style.turns_per_m * length + phase;
             let (sin, cos) = sin_cos_turn(turns - turns as u32 as f32);
             let aside = tangent.any_orthonormal_vector();
             p += (aside * cos + tangent.cross(aside) * sin) * style.curl_m * (along * 4.0).min(1.0);
         }
-        // A guide's shape from another root may lead into the skin, or before the face
+        // A guide's shape from another root may lead into the skin or the clothes, or before the face
         let aside = |p| field.beside_face(p, &first.root);
-        let p = if k == 0 { p } else { aside(field.obstacles.above_head(aside(p), CLEARANCE_M)) };
+        let outside = |p| {
+            let p = aside(field.obstacles.above_head(aside(p), CLEARANCE_M));
+            field.obstacles.over_torso(p, OVER_CLOTHES_M, side)
+        };
+        let p = if k == 0 { p } else { outside(p) };
         points.push((p, style.radius_m * (1.0 - 0.7 * along * along)));
     }
     cut(&mut points, field.down, style.cut_m + CUT_SCATTER_M * random.bell());

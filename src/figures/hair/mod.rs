@@ -14,6 +14,7 @@ mod head_surface;
 mod obstacles;
 mod roots;
 mod style;
+mod torso_surface;
 
 pub use face_hair::brow_density;
 pub use hair_body::HairBody;
@@ -92,6 +93,29 @@ mod tests {
             assert!(low.y > 0.5 * height && high.y < height + 0.06, "{low} {high}");
             assert_eq!(build(&figure).fine, meshes.fine, "equal parameters make equal meshes");
         }
+    }
+
+    #[test]
+    fn long_hair_falls_over_the_clothes() {
+        const DEPTH_M: f32 = 0.002;
+        let meshes = build(&READY[0].figure());
+        let mesh = &*meshes.fine;
+        let top = mesh.parts.iter().find(|part| part.name == "top").unwrap();
+        let triangles = &mesh.triangles[top.triangles.start as usize..top.triangles.end as usize];
+        let cloth: std::collections::BTreeSet<u32> = triangles.iter().flatten().copied().collect();
+        let (mut over, mut inside) = (0, 0);
+        for index in (0..mesh.strands.len()).step_by(60) {
+            let low = mesh.strands.strand(index).iter().filter(|point| point.position.y < 1.4);
+            for point in low.map(|point| point.position) {
+                let squared = |v: u32| mesh.positions[v as usize].distance_squared(point);
+                let nearest =
+                    cloth.iter().copied().min_by(|a, b| squared(*a).total_cmp(&squared(*b))).unwrap() as usize;
+                let height = (point - mesh.positions[nearest]).dot(mesh.normals[nearest]);
+                over += usize::from(height > 0.0);
+                inside += usize::from(height < -DEPTH_M);
+            }
+        }
+        assert!(over > 500 && inside * 50 < over, "{over} points over the clothes, {inside} inside");
     }
 
     #[test]

@@ -3,6 +3,7 @@
 use super::hair_body::HairBody;
 use super::head_surface::HeadSurface;
 use super::roots::Root;
+use super::torso_surface::TorsoSurface;
 use glam::Vec3;
 
 /// A rounded cylinder.
@@ -43,6 +44,9 @@ pub enum ShoulderSide {
     Back,
 }
 
+/// Distance of hair from the torso, on which clothes lie, metres.
+pub const OVER_CLOTHES_M: f32 = 0.008;
+
 /// Head and shoulders.
 #[derive(Clone, Debug)]
 pub struct Obstacles {
@@ -50,6 +54,7 @@ pub struct Obstacles {
     skull_radii: Vec3,
     head: HeadSurface,
     body: Vec<Capsule>,
+    torso: TorsoSurface,
     /// Unit vector in which the chest faces.
     forward: Vec3,
 }
@@ -68,19 +73,14 @@ impl Obstacles {
         let skull_radii = Vec3::new((high.x - low.x) / 2.0, depth * 1.02, depth);
         let skull_centre = Vec3::new(0.0, high.y - skull_radii.y, (high.z + low.z) / 2.0);
         let (neck, left, right) = (joint("neck01"), joint("upperarm01.L"), joint("upperarm01.R"));
-        let chest = joint("spine02");
         let span = left.distance(right);
         let capsule = |a, b, radius| Capsule { ends: [a, b], radius };
-        let body_capsules = vec![
-            capsule(joint("head"), neck, 0.19 * span),
-            capsule(left, right, 0.16 * span),
-            capsule(neck.lerp(left, 0.35), chest.lerp(left, 0.25), 0.27 * span),
-            capsule(neck.lerp(right, 0.35), chest.lerp(right, 0.25), 0.27 * span),
-        ];
+        let body_capsules = vec![capsule(joint("head"), neck, 0.19 * span), capsule(left, right, 0.16 * span)];
         let head = HeadSurface::new(body, skull_centre, over_ears);
         let up = to_head.transform_vector3(Vec3::Y);
         let forward = (left - right).cross(up).normalize_or(Vec3::Z);
-        Obstacles { skull_centre, skull_radii, head, body: body_capsules, forward }
+        let torso = TorsoSurface::new(body, neck, (left - right).normalize_or(Vec3::X), up);
+        Obstacles { skull_centre, skull_radii, head, body: body_capsules, torso, forward }
     }
 
     /// Returns the middle of the skull.
@@ -109,6 +109,12 @@ impl Obstacles {
             ShoulderSide::Front => self.forward,
             ShoulderSide::Back => -self.forward,
         };
-        self.body.iter().fold(self.above_head(p, height), |p, capsule| capsule.pushed_out(p, towards))
+        let p = self.body.iter().fold(self.above_head(p, height), |p, capsule| capsule.pushed_out(p, towards));
+        self.over_torso(p, OVER_CLOTHES_M.max(height), side)
+    }
+
+    /// Returns a point moved to a side of chest and back, to at least this distance from them, metres.
+    pub fn over_torso(&self, p: Vec3, distance: f32, side: ShoulderSide) -> Vec3 {
+        self.torso.pushed_out(p, distance, side == ShoulderSide::Front)
     }
 }

@@ -37,14 +37,16 @@ pub struct Style {
     pub grip: f32,
     /// Pull of gravity: 0 none, 1 falls at once.
     pub weight: f32,
-    /// Pull of hair below the ears towards the nape.
-    pub gather: f32,
     /// Distance at which the hair stays from the skull, metres.
     pub volume_m: f32,
     /// Radius of curls, metres.
     pub curl_m: f32,
     /// Turns of a curl in a metre.
     pub turns_per_m: f32,
+    /// Turns by which the curls of neighbouring guides differ, 0 to 1: where it is small, curls are waves.
+    pub phase_scatter: f32,
+    /// Part of the length by which the shortest strands are shorter.
+    pub layering: f32,
     /// How much strands gather round their guide towards the tips, 0 to 1.
     pub clumping: f32,
     /// Spread of directions, radians.
@@ -60,10 +62,11 @@ const SHORT: Style = Style {
     lift: 0.45,
     grip: 0.35,
     weight: 0.15,
-    gather: 0.0,
     volume_m: 0.01,
     curl_m: 0.0,
     turns_per_m: 0.0,
+    phase_scatter: 1.0,
+    layering: 0.0,
     clumping: 0.4,
     frizz: 0.16,
 };
@@ -98,7 +101,6 @@ pub fn of_head(hair: HairStyle) -> Option<Style> {
             lift: 0.15,
             grip: 0.5,
             weight: 0.7,
-            gather: 0.0,
             volume_m: 0.013,
             clumping: 0.4,
             frizz: 0.09,
@@ -107,18 +109,19 @@ pub fn of_head(hair: HairStyle) -> Option<Style> {
         HairStyle::Long => Style {
             strands: 38_000,
             radius_m: 80e-6,
-            length_m: [0.44, 0.38],
-            cut_m: f32::INFINITY,
+            length_m: [0.4, 0.36],
             comb: Comb::FromParting(0.02),
             lift: 0.12,
             grip: 0.5,
-            weight: 0.7,
-            gather: 0.08,
-            volume_m: 0.008,
-            curl_m: 0.003,
+            weight: 0.45,
+            volume_m: 0.011,
+            curl_m: 0.012,
             turns_per_m: 5.0,
+            phase_scatter: 0.25,
+            layering: 0.3,
             clumping: 0.65,
-            frizz: 0.06,
+            frizz: 0.09,
+            ..SHORT
         },
         HairStyle::TiedBack => Style {
             strands: 32_000,
@@ -137,17 +140,16 @@ pub fn of_head(hair: HairStyle) -> Option<Style> {
             strands: 30_000,
             radius_m: 75e-6,
             length_m: [0.13, 0.11],
-            cut_m: f32::INFINITY,
             comb: Comb::Out,
             lift: 0.7,
             grip: 0.22,
             weight: 0.3,
-            gather: 0.0,
             volume_m: 0.014,
             curl_m: 0.009,
             turns_per_m: 38.0,
             clumping: 0.75,
             frizz: 0.3,
+            ..SHORT
         },
     })
 }
