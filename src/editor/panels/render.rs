@@ -161,7 +161,7 @@ fn progress_ui(ui: &mut Ui, rendering: &Rendering) {
         let samples = match job.settings.noise_stops {
             // A coarse picture is there before the first sample of every pixel
             Some(_) if progress.samples < 0.5 => "First samples".to_owned(),
-            Some(_) => format!("{:.0} samples on average", progress.samples),
+            Some(_) => format!("{:.1} samples on average", progress.samples),
             None => format!("{:.0} of {} samples", progress.samples.floor(), job.settings.spp),
         };
         // A picture of an earlier run has its samples alone.

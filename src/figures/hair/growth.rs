@@ -40,6 +40,10 @@ const CUT_SCATTER_M: f32 = 0.004;
 const LEAST_OVER_EARS_M: f32 = 0.05;
 /// Segments of a guide.
 const STEPS: usize = 24;
+/// Segments of a strand: of a turn of its curls, at most, and the longest without curls, metres.
+const SEGMENTS_OF_A_TURN: f32 = 14.0;
+const MAX_SEGMENTS: f32 = 32.0;
+const LONGEST_SEGMENT_M: f32 = 0.025;
 /// Longest step in which a guide grows, metres: longer ones would leave the curve of the head.
 const LONGEST_STEP_M: f32 = 0.006;
 
@@ -276,10 +280,11 @@ struct StrandStep {
 /// Returns the points of every strand of a style: as many as its length and its curls need.
 fn steps_of(style: &Style) -> Vec<StrandStep> {
     let length = style.length_m[0].max(style.length_m[1]);
-    let curls = length * style.turns_per_m * 7.0;
-    let segments = (length / 0.025).max(curls).ceil().clamp(4.0, 32.0) as usize;
-    // Close to the skin, which is convex, points are denser: a chord would lead through the skin
-    let bunching = if curls > length / 0.025 { 1.0 } else { 1.5 };
+    let turns = length * style.turns_per_m * SEGMENTS_OF_A_TURN;
+    let segments = (length / LONGEST_SEGMENT_M).max(turns).ceil().clamp(4.0, MAX_SEGMENTS) as usize;
+    // Close to the skin, which is convex, points are denser: a chord would lead through the skin. Curls need them all
+    // along
+    let bunching = if turns > MAX_SEGMENTS { 1.0 } else { 1.5 };
     let step = |k: usize| {
         let along = (k as f32 / segments as f32).powf(bunching);
         let gather = match style.comb {

@@ -115,7 +115,7 @@ pub fn of_head(hair: HairStyle) -> Option<Style> {
             grip: 0.5,
             weight: 0.45,
             volume_m: 0.011,
-            curl_m: 0.012,
+            curl_m: 0.01,
             turns_per_m: 5.0,
             phase_scatter: 0.25,
             layering: 0.3,
