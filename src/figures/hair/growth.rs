@@ -1,9 +1,10 @@
 //! Grows the hair of a head: guides that follow the comb, and strands between them.
 
 use super::hair_body::HairBody;
-use super::obstacles::{OVER_CLOTHES_M, Obstacles, ShoulderSide};
+use super::obstacles::{OVER_CLOTHES_M, Obstacles};
 use super::roots::{Root, scatter};
 use super::style::{Comb, Style, scalp_density, sideburn_density};
+use super::torso_surface::ShoulderSide;
 use crate::figures::random::Random;
 use crate::math::simd::LANES;
 use crate::math::{atan2, sin_cos_turn};

@@ -1,7 +1,7 @@
 //! Hair of head and face as strands, grown from a seed.
 //!
 //! ```text
-//! roots on the skin (roots.rs) -> guide strands that follow the style and stay outside of head and shoulders
+//! roots on the skin (roots.rs) -> guide strands that follow the style and stay outside of head and torso
 //!   (style.rs, growth.rs) -> strands between the guides, in clumps (growth.rs)
 //! ```
 //!

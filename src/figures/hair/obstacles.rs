@@ -1,9 +1,9 @@
-//! What hair must not enter: the head, as a height field, and neck, shoulders and chest, as capsules, in the head's frame.
+//! What hair must not enter, in the head's frame: head and torso, as height fields, and neck and shoulders, as capsules.
 
 use super::hair_body::HairBody;
 use super::head_surface::HeadSurface;
 use super::roots::Root;
-use super::torso_surface::TorsoSurface;
+use super::torso_surface::{ShoulderSide, TorsoSurface};
 use glam::Vec3;
 
 /// A rounded cylinder.
@@ -35,19 +35,10 @@ impl Capsule {
     }
 }
 
-/// The side of the shoulders on which hair falls.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum ShoulderSide {
-    /// Over the chest.
-    Front,
-    /// Over the back.
-    Back,
-}
-
 /// Distance of hair from the torso, on which clothes lie, metres.
 pub const OVER_CLOTHES_M: f32 = 0.008;
 
-/// Head and shoulders.
+/// Head, neck, shoulders and torso.
 #[derive(Clone, Debug)]
 pub struct Obstacles {
     skull_centre: Vec3,
@@ -115,6 +106,6 @@ impl Obstacles {
 
     /// Returns a point moved to a side of chest and back, to at least this distance from them, metres.
     pub fn over_torso(&self, p: Vec3, distance: f32, side: ShoulderSide) -> Vec3 {
-        self.torso.pushed_out(p, distance, side == ShoulderSide::Front)
+        self.torso.pushed_out(p, distance, side)
     }
 }

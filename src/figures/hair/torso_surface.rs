@@ -14,8 +14,17 @@ const TOP_M: f32 = 0.06;
 const GROUPS: [&str; 2] = ["body", "helper-tights"];
 /// Bones of the torso, by the beginning of their names; arms may be before it.
 const BONES: [&str; 5] = ["spine", "breast", "clavicle", "shoulder", "neck"];
-/// Points along an edge of a quad at which it is measured: denser than the cells.
+/// Points along an edge of a quad at which its distance is taken: denser than the cells.
 const SAMPLES: usize = 6;
+
+/// The side of the shoulders on which hair falls.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ShoulderSide {
+    /// Over the chest.
+    Front,
+    /// Over the back.
+    Back,
+}
 
 /// Distances of chest and back from a vertical plane through the shoulders.
 #[derive(Clone, Debug)]
@@ -70,10 +79,14 @@ impl TorsoSurface {
         }
     }
 
-    /// Returns a point moved forwards until it lies this far before the chest, or backwards behind the back.
-    pub fn pushed_out(&self, p: Vec3, distance: f32, to_front: bool) -> Vec3 {
+    /// Returns a point moved forwards until it lies this far before the chest, or backwards until it lies this far behind
+    /// the back, metres.
+    pub fn pushed_out(&self, p: Vec3, distance: f32, side: ShoulderSide) -> Vec3 {
         let local = self.local(p);
-        let (field, along) = if to_front { (&self.chest, 1.0) } else { (&self.back, -1.0) };
+        let (field, along) = match side {
+            ShoulderSide::Front => (&self.chest, 1.0),
+            ShoulderSide::Back => (&self.back, -1.0),
+        };
         let missing = height(field, cell_of(local)) + distance - local.z * along;
         if missing > 0.0 { p + self.axes[2] * (missing * along) } else { p }
     }
