@@ -3,12 +3,14 @@
 use super::body_data::{BodyData, Mask};
 use super::eyes::add_eye;
 use super::garments::dress;
+use super::gaze::without_gaze;
 use super::hair::{self, HairBody};
 use super::patch::Patch;
 use super::posed_body::PosedBody;
 use super::regions::{Clothes, Edges, Garment};
 use super::skin_colors::{NO_SKIN, skin_colors};
 use super::subdivide::{QuadMesh, SubdivisionSurface};
+use super::tear_line::{Lashes, add_tear_line};
 use crate::scene::{Expression, Figure, FigureMeshes, Mesh, MeshPart};
 use glam::{Affine3A, Vec2, Vec3};
 use std::sync::Arc;
@@ -32,13 +34,14 @@ pub fn build(data: &BodyData, figure: &Figure) -> FigureMeshes {
     let eyes = eyeballs.map(|ball| ball.translation.into());
     let hair_body = HairBody { data, positions: &body.positions, head: body.head(data), eyes };
     let (eyes_mesh, eye_colors) = both_eyes(eyeballs);
-    let finish = |mut quads: QuadMesh, normals: &[Vec3], colors: &[Vec3]| {
+    let finish = |mut quads: QuadMesh, normals: &[Vec3], colors: &[Vec3], tears: &(QuadMesh, Vec<Vec3>)| {
         // The vertices of the coarse mesh are the first ones of the fine mesh: both lie on the limit surface
         let count = quads.positions.len();
         split_skin(data, &mut quads);
         quads.append(&eyes_mesh);
-        let normals = [&normals[..count], &eyes_mesh.normals()].concat();
-        to_mesh(&quads, &normals, &[&colors[..count], &eye_colors].concat())
+        quads.append(&tears.0);
+        let normals = [&normals[..count], &eyes_mesh.normals(), &tears.0.normals()].concat();
+        to_mesh(&quads, &normals, &[&colors[..count], &eye_colors, &tears.1].concat())
     };
     let skin = || {
         let (mut coarse, clothes) = rayon::join(
@@ -51,8 +54,11 @@ pub fn build(data: &BodyData, figure: &Figure) -> FigureMeshes {
         let (mut coarse, fine) = (coarse.mesh, fine.mesh);
         let shared = coarse.positions.len();
         coarse.positions.copy_from_slice(&fine.positions[..shared]);
-        let (normals, colors) = rayon::join(|| fine.normals(), || skin_colors(&fine.values, figure));
-        rayon::join(|| finish(coarse, &normals, &colors), || finish(fine, &normals, &colors))
+        let ((normals, colors), tears) = rayon::join(
+            || rayon::join(|| fine.normals(), || skin_colors(&fine.values, figure)),
+            || tear_lines(data, figure, &body, &fine),
+        );
+        rayon::join(|| finish(coarse, &normals, &colors, &tears), || finish(fine, &normals, &colors, &tears))
     };
     let ((mut coarse, mut fine), strands) = rayon::join(skin, || hair::grow(&hair_body, figure));
     coarse.strands = hair::thinned(&strands);
@@ -67,14 +73,20 @@ pub fn with_other_gaze(data: &BodyData, built: &FigureMeshes, figure: &Figure) -
     let eyes = to_mesh(&eyes, &eyes.normals(), &colors);
     let turned = |mesh: &Mesh| {
         let mut mesh = mesh.clone();
-        // The vertices of eyes are a block of their own
-        let part = mesh.parts.iter().find(|part| part.name == PARTS[usize::from(EYES)]);
-        let first = part.map_or(0, |part| mesh.triangles[part.triangles.start as usize][0] as usize);
-        let block = first..first + eyes.positions.len();
-        if part.is_some() && block.end <= mesh.positions.len() {
-            mesh.positions[block.clone()].copy_from_slice(&eyes.positions);
-            mesh.normals[block.clone()].copy_from_slice(&eyes.normals);
-            mesh.colors[block].copy_from_slice(&eyes.colors);
+        // The vertices of each part of the eyes are a block
+        let starts = |mesh: &Mesh| mesh.parts.iter().map(|p| mesh.triangles[p.triangles.start as usize][0]).collect();
+        let (own_starts, mesh_starts): (Vec<u32>, Vec<u32>) = (starts(&eyes), starts(&mesh));
+        for (index, part) in eyes.parts.iter().enumerate() {
+            let end = own_starts.get(index + 1).map_or(eyes.positions.len(), |start| *start as usize);
+            let own = own_starts[index] as usize..end;
+            let Some(place) = mesh.parts.iter().position(|p| p.name == part.name) else { continue };
+            let first = mesh_starts[place] as usize;
+            let block = first..first + own.len();
+            if block.end <= mesh.positions.len() {
+                mesh.positions[block.clone()].copy_from_slice(&eyes.positions[own.clone()]);
+                mesh.normals[block.clone()].copy_from_slice(&eyes.normals[own.clone()]);
+                mesh.colors[block].copy_from_slice(&eyes.colors[own]);
+            }
         }
         Arc::new(mesh)
     };
@@ -96,6 +108,16 @@ fn both_eyes(eyeballs: [Affine3A; 2]) -> (QuadMesh, Vec<Vec3>) {
     let (mut mesh, mut colors) = (QuadMesh::default(), Vec::new());
     for eyeball in eyeballs {
         colors.extend(add_eye(&mut mesh, eyeball, |part| EYES + part as u8));
+    }
+    (mesh, colors)
+}
+
+/// Returns the quads of the tear lines of both eyes, and the colours of their vertices.
+fn tear_lines(data: &BodyData, figure: &Figure, body: &PosedBody, skin: &QuadMesh) -> (QuadMesh, Vec<Vec3>) {
+    let (mut mesh, mut colors) = (QuadMesh::default(), Vec::new());
+    let eyeballs = body.eyeballs(data, &without_gaze(figure));
+    for (eye, lashes) in eyeballs.into_iter().zip(Lashes::of_both_eyes(data, &body.positions)) {
+        colors.extend(add_tear_line(&mut mesh, skin, eye, &lashes, EYES));
     }
     (mesh, colors)
 }

@@ -1,5 +1,6 @@
 //! Clothes: patches of the base mesh's helper meshes, cut at the edges of garments, fitted to the body and draped as cloth.
 
+use super::bands::{Band, Skin, sew_bands};
 use super::body_data::BodyData;
 use super::cloth::Cloth;
 use super::patch::Patch;
@@ -24,6 +25,7 @@ pub fn dress(
     body: &PosedBody,
     part: impl Fn(Garment) -> u8 + Sync,
 ) -> SubdivisionSurface {
+    let neck = Skin::new(shoulders(data, figure.top, &body.positions));
     let worn = |garment: &Garment| {
         let fitted = |positions| fitted(data, figure, body, *garment, positions);
         let coarse = SubdivisionSurface::new(fitted(&body.positions));
@@ -35,6 +37,7 @@ pub fn dress(
             surface.mesh.positions = Cloth { fitted: &surface, rest, mobility: &mobility, support_m }.draped();
         }
         surface.mesh.parts.fill(part(*garment));
+        let mut surface = sew_bands(&surface, |edge| band_of(&surface, edge, *garment, figure.top, &neck));
         surface.mesh.values.fill(NO_SKIN);
         surface
     };
@@ -46,7 +49,7 @@ pub fn dress(
 }
 
 /// Returns a garment as it fits the body whose vertices have these positions, before subdivision. Its values are its
-/// mobility, in all three components: 0 where it is held, 1 where it is free.
+/// mobility (0 where it is held, 1 where it is free), its nearness to an edge that lies close, and 1 where a bust is cut.
 fn fitted(data: &BodyData, figure: &Figure, body: &PosedBody, garment: Garment, positions: &[Vec3]) -> QuadMesh {
     let (edges, clothes) = (Edges::shipped(), Clothes::new(figure));
     let is_skirt = garment == Garment::Bottom && clothes.bottom == Bottom::Skirt;
@@ -61,8 +64,7 @@ fn fitted(data: &BodyData, figure: &Figure, body: &PosedBody, garment: Garment, 
     patch.move_outwards(&|v| edges.looseness(v, garment, clothes));
     // Only the edges of collar and straps lie close: further out the garment hangs from the shoulders
     if garment == Garment::Top {
-        let shoulders =
-            Patch::new(data, "body", positions, &|quad| quad.iter().all(|&v| edges.is_near_close_edge(v, clothes.top)));
+        let shoulders = shoulders(data, clothes.top, positions);
         let height_m = if clothes.top == Top::Straps { STRAP_M } else { COLLAR_M };
         patch.lay_on(&shoulders, height_m, &|v| edges.nearness_to_close_edge(v, clothes.top).powi(8));
     }
@@ -70,7 +72,34 @@ fn fitted(data: &BodyData, figure: &Figure, body: &PosedBody, garment: Garment, 
         let to_hold = edges.to_hold(v, garment, clothes).min(body.above_cut(v));
         (to_hold / FREE_M).clamp(0.0, 1.0)
     };
-    patch.into_mesh(0, &|v| Vec3::splat(mobility(v)))
+    let closeness = |v: u16| if garment == Garment::Top { edges.nearness_to_close_edge(v, clothes.top) } else { 0.0 };
+    let is_cut = |v: u16| f32::from(body.above_cut(v) < field(v));
+    patch.into_mesh(0, &|v| Vec3::new(mobility(v), closeness(v), is_cut(v)))
+}
+
+/// Returns the band at an edge of a garment whose values are those of [`fitted`]. None at the cut of a bust.
+fn band_of<'a>(
+    surface: &SubdivisionSurface,
+    edge: &[u32],
+    garment: Garment,
+    top: Top,
+    neck: &'a Skin,
+) -> Option<Band<'a>> {
+    let sum = edge.iter().map(|&v| surface.mesh.values[v as usize]).sum::<Vec3>();
+    let [_, closeness, cut] = (sum / edge.len() as f32).to_array();
+    let lies_close = closeness > 0.5;
+    match garment {
+        _ if cut > 0.5 => None,
+        Garment::Top if lies_close && top != Top::Straps => Some(Band::Collar(neck)),
+        Garment::Top | Garment::Bottom if !lies_close => Some(Band::Hem),
+        _ => Some(Band::Binding),
+    }
+}
+
+/// Returns the skin below the edges of an upper garment that lie close.
+fn shoulders(data: &BodyData, top: Top, positions: &[Vec3]) -> Patch {
+    let edges = Edges::shipped();
+    Patch::new(data, "body", positions, &|quad| quad.iter().all(|&v| edges.is_near_close_edge(v, top)))
 }
 
 #[cfg(test)]
@@ -100,6 +129,28 @@ mod tests {
                 let farthest = positions.iter().zip(&fitted.positions).map(|(a, b)| a.distance(*b)).fold(0.0, f32::max);
                 assert!((3.0..25.0).contains(&turn), "{} {garment:?}: {turn} degrees", ready.name);
                 assert!(farthest < 0.15, "{} {garment:?}: {farthest} m", ready.name);
+            }
+        }
+    }
+
+    #[test]
+    fn bands_of_the_ready_figures_lie_over_the_skin_at_the_neck_and_close_every_opening() {
+        let data = BodyData::shipped();
+        for ready in READY {
+            let figure = ready.figure();
+            let body = PosedBody::new(data, &figure);
+            let top = SubdivisionSurface::new(fitted(data, &figure, &body, Garment::Top, &body.positions)).subdivided();
+            assert_eq!(top.border_loops().len(), 4, "{}: neck, arms and hem", ready.name);
+            let skin = Skin::new(shoulders(data, figure.top, &body.positions));
+            let banded = sew_bands(&top, |edge| band_of(&top, edge, Garment::Top, figure.top, &skin));
+            let first = top.mesh.positions.len();
+            assert!(banded.mesh.positions.len() > first + 4 * 9 * 20, "{}", ready.name);
+            for position in &banded.mesh.positions[first..] {
+                let neck = body.head(data).inverse().transform_point3(*position);
+                if figure.top != Top::Straps && neck.y > -0.26 {
+                    let height = skin.height(*position).map_or(0.0, |(height, _)| height);
+                    assert!((0.0..0.015).contains(&height), "{}: {height} m over the skin at {neck}", ready.name);
+                }
             }
         }
     }

@@ -8,6 +8,7 @@
 //! The body data are MakeHuman's (CC0), converted by `catchlight bake-figures`. A mesh is a function of the parameters:
 //! the same bits for any number of threads.
 
+mod bands;
 mod body_codec;
 mod body_data;
 mod build;
@@ -32,6 +33,7 @@ mod skin_colors;
 mod skin_textures;
 mod skinning;
 mod subdivide;
+mod tear_line;
 mod two_bone_ik;
 
 pub use body_codec::BodyDataError;

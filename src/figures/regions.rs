@@ -161,7 +161,7 @@ impl Edges {
     /// Returns the distance from the opening for the neck: a ball round its base, lower in front for straps.
     fn to_neckline(&self, vertex: u16, top: Top) -> f32 {
         let (centre, radius) = match top {
-            Top::LongSleeves | Top::ShortSleeves => (Vec3::new(0.0, 0.022, 0.0), 0.082),
+            Top::LongSleeves | Top::ShortSleeves => (Vec3::new(0.0, 0.022, 0.0), 0.09),
             Top::Straps => (Vec3::new(0.0, 0.0, 0.05), 0.125),
         };
         self.positions[usize::from(vertex)].distance(self.neck + centre) - radius

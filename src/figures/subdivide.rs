@@ -2,6 +2,7 @@
 
 use glam::{Vec2, Vec3};
 use rayon::prelude::*;
+use std::collections::BTreeMap;
 
 /// A mesh of quads with texture coordinates and a part for each quad.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -169,6 +170,27 @@ impl SubdivisionSurface {
             }
         }
         rings
+    }
+
+    /// Returns the vertices along each border, in the order in which the surface lies left of it, seen from outside.
+    pub fn border_loops(&self) -> Vec<Vec<u32>> {
+        let sides = self.mesh.quads.iter().zip(&self.edges.of_quad).flat_map(|(quad, sides)| {
+            let side = |k: usize| (self.edges.edges[sides[k] as usize].is_border(), quad[k], quad[(k + 1) % 4]);
+            [0, 1, 2, 3].map(side)
+        });
+        let mut next: BTreeMap<u32, u32> =
+            sides.filter(|(is_border, ..)| *is_border).map(|(_, from, to)| (from, to)).collect();
+        let mut loops = Vec::new();
+        while let Some((start, mut vertex)) = next.pop_first() {
+            let mut border = vec![start];
+            while vertex != start {
+                border.push(vertex);
+                let Some(following) = next.remove(&vertex) else { break };
+                vertex = following;
+            }
+            loops.push(border);
+        }
+        loops
     }
 
     /// Moves every vertex to where further subdivisions would take it.
