@@ -1,7 +1,7 @@
 //! A patch of the posed body: some quads of a group, cut at the edge of a garment.
 
 use super::body_data::BodyData;
-use super::subdivide::QuadMesh;
+use super::subdivide::{QuadMesh, SubdivisionSurface};
 use glam::{Vec2, Vec3};
 use std::collections::HashMap;
 
@@ -18,7 +18,37 @@ pub struct Patch {
     pub sources: Vec<u16>,
 }
 
+/// Skin that clothes lie on, taken as flat round each of its vertices.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Skin {
+    positions: Vec<Vec3>,
+    /// Unit normals of the vertices.
+    normals: Vec<Vec3>,
+}
+
+impl Skin {
+    /// Returns the height of a point over the tangent plane of the nearest vertex, metres, and its unit normal. None for
+    /// skin without vertices.
+    pub fn height(&self, point: Vec3) -> Option<(f32, Vec3)> {
+        let distance = |i: usize| self.positions[i].distance_squared(point);
+        let nearest = (0..self.positions.len()).min_by(|&a, &b| distance(a).total_cmp(&distance(b)))?;
+        let normal = self.normals[nearest];
+        Some(((point - self.positions[nearest]).dot(normal), normal))
+    }
+}
+
 impl Patch {
+    /// Returns the skin of this patch.
+    pub fn skin(self) -> Skin {
+        Skin { normals: self.normals(), positions: self.positions }
+    }
+
+    /// Returns the skin of this patch, subdivided once.
+    pub fn subdivided_skin(self) -> Skin {
+        let mesh = SubdivisionSurface::new(self.into_mesh(0, &|_| Vec3::ZERO)).subdivided().mesh;
+        Skin { normals: mesh.normals(), positions: mesh.positions }
+    }
+
     /// Returns the wanted quads of a group of the body data.
     pub fn new(data: &BodyData, group: &str, positions: &[Vec3], wanted: &dyn Fn(&[u16; 4]) -> bool) -> Patch {
         let mut patch = Patch::default();
@@ -78,19 +108,14 @@ impl Patch {
         }
     }
 
-    /// Moves vertices to a height over a surface, metres: by a weight of 0 (not at all) to 1 (all the way). The surface is
-    /// taken as flat round each of its vertices.
-    pub fn lay_on(&mut self, surface: &Patch, height_m: f32, weight: &dyn Fn(u16) -> f32) {
-        let normals = surface.normals();
+    /// Moves vertices to a height over skin, metres: by a weight of 0 (not at all) to 1 (all the way).
+    pub fn lay_on(&mut self, skin: &Skin, height_m: f32, weight: &dyn Fn(u16) -> f32) {
         for (position, &source) in self.positions.iter_mut().zip(&self.sources) {
             let weight = weight(source);
-            let distance = |other: &Vec3| other.distance_squared(*position);
-            let nearest = (0..normals.len())
-                .filter(|_| weight > 0.0)
-                .min_by(|&a, &b| distance(&surface.positions[a]).total_cmp(&distance(&surface.positions[b])));
-            if let Some(nearest) = nearest {
-                let height = (*position - surface.positions[nearest]).dot(normals[nearest]);
-                *position += normals[nearest] * (weight * (height_m - height));
+            if weight > 0.0
+                && let Some((height, normal)) = skin.height(*position)
+            {
+                *position += normal * (weight * (height_m - height));
             }
         }
     }
