@@ -1,11 +1,11 @@
-//! Sews bands to the edges of garments: collars, cuffs, waistbands and hems. A band begins at a seam, stands out by the
+//! Sews bands to the edges of garments: collars, cuffs and hems. A band begins at a seam, stands out by the
 //! thickness of folded cloth and ends in a rim that is turned under.
 
 use super::patch::Skin;
 use super::subdivide::{QuadMesh, SubdivisionSurface};
 use glam::{Vec2, Vec3};
 
-/// Widths of bands, metres: of a collar, of the binding of straps and shoes, of cuffs and hems. Typical.
+/// Widths of bands, metres: of a collar, of a binding, of cuffs and hems. Typical.
 const COLLAR_WIDTH_M: f32 = 0.018;
 const BINDING_WIDTH_M: f32 = 0.008;
 const HEM_WIDTH_M: f32 = 0.016;
@@ -30,9 +30,9 @@ const DIRECTION_ROUNDS: usize = 20;
 pub enum Band<'a> {
     /// Of a neckline: it follows the skin.
     Collar(&'a Skin),
-    /// Of straps and shoes: narrow.
+    /// Of straps, trousers and shoes: narrow.
     Binding,
-    /// Of sleeves, legs and waists.
+    /// Of sleeves, tops and skirts.
     Hem,
 }
 

@@ -37,7 +37,7 @@ pub fn dress(
             surface.mesh.positions = Cloth { fitted: &surface, rest, mobility: &mobility, support_m }.draped();
         }
         surface.mesh.parts.fill(part(*garment));
-        let mut surface = sew_bands(&surface, |edge| band_of(&surface, edge, *garment, figure.top, &neck));
+        let mut surface = sew_bands(&surface, |edge| band_of(&surface, edge, *garment, Clothes::new(figure), &neck));
         surface.mesh.values.fill(NO_SKIN);
         surface
     };
@@ -49,7 +49,8 @@ pub fn dress(
 }
 
 /// Returns a garment as it fits the body whose vertices have these positions, before subdivision. Its values are its
-/// mobility (0 where it is held, 1 where it is free), its nearness to an edge that lies close, and 1 where a bust is cut.
+/// mobility (0 where it is held, 1 where it is free), its nearness to an edge that lies close, and 1 by the cut of a bust
+/// and by an edge that is tucked in.
 fn fitted(data: &BodyData, figure: &Figure, body: &PosedBody, garment: Garment, positions: &[Vec3]) -> QuadMesh {
     let (edges, clothes) = (Edges::shipped(), Clothes::new(figure));
     let is_skirt = garment == Garment::Bottom && clothes.bottom == Bottom::Skirt;
@@ -73,25 +74,30 @@ fn fitted(data: &BodyData, figure: &Figure, body: &PosedBody, garment: Garment, 
         (to_hold / FREE_M).clamp(0.0, 1.0)
     };
     let closeness = |v: u16| if garment == Garment::Top { edges.nearness_to_close_edge(v, clothes.top) } else { 0.0 };
-    let is_cut = |v: u16| f32::from(body.above_cut(v) < field(v));
-    patch.into_mesh(0, &|v| Vec3::new(mobility(v), closeness(v), is_cut(v)))
+    let is_unseen =
+        |v: u16| body.above_cut(v) < field(v) || (garment == Garment::Top && edges.is_tucked_in(v, clothes));
+    patch.into_mesh(0, &|v| Vec3::new(mobility(v), closeness(v), f32::from(is_unseen(v))))
 }
 
-/// Returns the band at an edge of a garment whose values are those of [`fitted`]. None at the cut of a bust.
+/// Returns the band at an edge of a garment whose values are those of [`fitted`]. None where a bust is cut or the edge is
+/// tucked in, and at the waist of trousers and skirts, over which the top hangs.
 fn band_of<'a>(
     surface: &SubdivisionSurface,
     edge: &[u32],
     garment: Garment,
-    top: Top,
+    clothes: Clothes,
     neck: &'a Skin,
 ) -> Option<Band<'a>> {
     let sum = edge.iter().map(|&v| surface.mesh.values[v as usize]).sum::<Vec3>();
-    let [_, closeness, cut] = (sum / edge.len() as f32).to_array();
-    let lies_close = closeness > 0.5;
+    let [mobility, closeness, unseen] = (sum / edge.len() as f32).to_array();
+    let (is_unseen, is_held, lies_close) = (unseen > 0.5, mobility < 0.1, closeness > 0.5);
     match garment {
-        _ if cut > 0.5 => None,
-        Garment::Top if lies_close && top != Top::Straps => Some(Band::Collar(neck)),
-        Garment::Top | Garment::Bottom if !lies_close => Some(Band::Hem),
+        _ if is_unseen => None,
+        Garment::Top if lies_close && clothes.top != Top::Straps => Some(Band::Collar(neck)),
+        Garment::Top if !lies_close => Some(Band::Hem),
+        Garment::Bottom if is_held => None,
+        // Trousers bend over the shoes
+        Garment::Bottom if clothes.bottom != Bottom::Trousers => Some(Band::Hem),
         _ => Some(Band::Binding),
     }
 }
@@ -142,8 +148,12 @@ mod tests {
             let top = SubdivisionSurface::new(fitted(data, &figure, &body, Garment::Top, &body.positions)).subdivided();
             assert_eq!(top.border_loops().len(), 4, "{}: neck, arms and hem", ready.name);
             let skin = shoulders(data, figure.top, &body.positions).subdivided_skin();
+            let bands = top.border_loops().into_iter();
+            let bands = bands.filter_map(|edge| band_of(&top, &edge, Garment::Top, Clothes::new(&figure), &skin));
+            let tucked_in = usize::from(figure.bottom == Bottom::Skirt);
+            assert_eq!(bands.count(), 4 - tucked_in, "{}", ready.name);
             let collar = |edge: &[u32]| {
-                let band = band_of(&top, edge, Garment::Top, figure.top, &skin);
+                let band = band_of(&top, edge, Garment::Top, Clothes::new(&figure), &skin);
                 band.filter(|band| matches!(band, Band::Collar(_)))
             };
             let first = top.mesh.positions.len();

@@ -158,6 +158,13 @@ impl Edges {
         self.positions[usize::from(vertex)].y - hem_height
     }
 
+    /// Returns true where the nearest edge of an upper garment is one that is tucked into a skirt.
+    pub fn is_tucked_in(&self, vertex: u16, clothes: Clothes) -> bool {
+        let is_arm = matches!(self.place(vertex), Place::Arm(_));
+        let is_by_hem = self.to_hem(vertex, clothes.bottom) < self.to_neckline(vertex, clothes.top);
+        clothes.bottom == Bottom::Skirt && !is_arm && is_by_hem
+    }
+
     /// Returns the distance from the opening for the neck: a ball round its base, lower in front for straps.
     fn to_neckline(&self, vertex: u16, top: Top) -> f32 {
         let (centre, radius) = match top {
