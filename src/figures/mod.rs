@@ -2,7 +2,8 @@
 //!
 //! ```text
 //! BodyData (base mesh, targets, bones) + Figure -> morph: rest positions -> skeleton and skinning: posed positions
-//!   -> cages of skin and teeth, garments draped as cloth -> Catmull-Clark subdivision -> Mesh with parts, and eyes
+//!   -> cages of skin and teeth, garments draped as cloth and their bands -> Catmull-Clark subdivision
+//!   -> Mesh with parts; eyes and their tear lines
 //! ```
 //!
 //! The body data are MakeHuman's (CC0), converted by `catchlight bake-figures`. A mesh is a function of the parameters:
