@@ -60,6 +60,11 @@ pub enum PathEvent {
         /// Gather radius, metres.
         radius: f32,
     },
+    /// The diffuse light of the vertex comes from the irradiance cache.
+    CachedLight {
+        /// Size of its cells, metres.
+        cell_m: f32,
+    },
     /// A direction is sampled from the BSDF.
     BsdfSample {
         /// The kind of scattering.
@@ -192,4 +197,6 @@ pub enum PathEnd {
     Absorbed,
     /// Russian roulette.
     Roulette,
+    /// All light of the vertex came from the irradiance cache.
+    Cached,
 }

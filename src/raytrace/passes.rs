@@ -1,7 +1,9 @@
-//! Sample passes: progressive rendering in passes of 1, 1, 2, 4 ... samples per pixel, each with its own photons.
+//! Sample passes: progressive rendering in passes of 1, 1, 2, 4 ... samples per pixel, each with its own photons and its
+//! own cache of bounced light.
 
 use super::caustics::{CausticView, MIN_PHOTONS, PhotonMap, PhotonPass};
 use super::control::RenderControl;
+use super::irradiance_cache::{CachePoints, IrradianceCache};
 use super::render_scene::RenderScene;
 use super::settings::{Method, Settings};
 use std::sync::Arc;
@@ -57,32 +59,55 @@ pub fn uses_photons(scene: &RenderScene, settings: &Settings) -> bool {
     scene.plan().photons && settings.method != Method::Whitted
 }
 
-/// The photons of a render; a function of scene and settings.
+/// Returns true if a render has an irradiance cache where it pays: paths of the plan's own depth, at one time.
+fn may_use_cache(scene: &RenderScene, settings: &Settings) -> bool {
+    let is_whole = settings.method == Method::Path && settings.max_depth.is_none() && scene.moments.is_empty();
+    scene.plan().irradiance_cache && is_whole
+}
+
+/// The light that the samples of a pass share: photons of caustics, and the cache of bounced light.
+#[derive(Debug, Default)]
+pub struct SharedLight {
+    /// The photons; none for a render without them.
+    pub photon_map: Option<PhotonMap>,
+    /// The cache; none where it does not pay.
+    pub irradiance_cache: Option<IrradianceCache>,
+}
+
+/// Traces the shared light of a render's passes; a function of scene and settings.
 #[derive(Debug)]
-pub struct RenderPhotons<'a> {
+pub struct SharedLightTracer<'a> {
     scene: &'a RenderScene,
     settings: &'a Settings,
     /// Visible surfaces and density of starts. None for a render without photons.
     view: Option<Arc<CausticView>>,
+    /// Surfaces that paths meet after a bounce. None for a render without a cache.
+    points: Option<CachePoints>,
 }
 
-impl<'a> RenderPhotons<'a> {
-    /// Learns the density of the photons' starts, if the render has any. Of no use if `control` is cancelled.
+impl<'a> SharedLightTracer<'a> {
+    /// Learns where photons start and which surfaces have cached light, if the render has any. Of no use if `control` is
+    /// cancelled.
     pub fn new(scene: &'a RenderScene, settings: &'a Settings, control: &RenderControl) -> Self {
+        let camera = scene.lens.film_camera(settings.width, settings.height);
         let view = uses_photons(scene, settings).then(|| {
-            let camera = scene.lens.film_camera(settings.width, settings.height);
             let photons = settings.pixels() * u64::from(settings.spp);
             Arc::new(CausticView::learn(scene, &camera, photons, settings.seed, control))
         });
-        RenderPhotons { scene, settings, view }
+        let points = may_use_cache(scene, settings).then(|| CachePoints::find(scene, &camera)).flatten();
+        SharedLightTracer { scene, settings, view, points }
     }
 
-    /// Traces the photons of a pass, if the render has any. Incomplete if `control` is cancelled.
-    pub fn trace(&self, pass: SamplePass, control: &RenderControl) -> Option<PhotonMap> {
+    /// Traces the shared light of a pass. Incomplete if `control` is cancelled.
+    pub fn trace(&self, pass: SamplePass, control: &RenderControl) -> SharedLight {
         let SamplePass { first_sample, samples } = pass;
+        let (scene, seed) = (self.scene, self.settings.seed);
         let photons = MIN_PHOTONS.max(self.settings.pixels() * u64::from(samples));
-        let pass = PhotonPass { first_sample, samples, photons, seed: self.settings.seed };
-        self.view.as_ref().map(|view| PhotonMap::trace(self.scene, &pass, view, control))
+        let photon_pass = PhotonPass { first_sample, samples, photons, seed };
+        let photon_map = self.view.as_ref().map(|view| PhotonMap::trace(scene, &photon_pass, view, control));
+        let points = self.points.as_ref();
+        let irradiance_cache = points.map(|points| points.trace(scene, photon_map.as_ref(), pass, seed, control));
+        SharedLight { photon_map, irradiance_cache }
     }
 }
 

@@ -12,9 +12,11 @@ use super::caustics::{CausticMis, GatherDensities, GatherPoint, PhotonMap};
 use super::emitters::MisVertex;
 use super::events::{Lobe, PathEnd, PathEvent, PathVertex};
 use super::geometry::SurfaceInteraction;
+use super::irradiance_cache::{CacheQuery, IrradianceCache};
 use super::lights::LightImportances;
 use super::limits::PathLimits;
 use super::medium_stack::MediumStack;
+use super::passes::SharedLight;
 use super::ray_caster::RayCaster;
 use super::ray_filter::RayFilter;
 use super::render_scene::RenderScene;
@@ -26,10 +28,6 @@ use glam::Vec3;
 
 /// Faces of clear glass, one behind the other, at which a camera path follows both reflection and transmission.
 const DIELECTRIC_SPLITS: u32 = 3;
-/// Part of the throughput below which a path after a dielectric split is not split again.
-const MIN_SPLIT_THROUGHPUT: f32 = 0.25;
-/// The largest lobe choice below 1.
-const BELOW_ONE: f32 = 1.0 - f32::EPSILON / 2.0;
 
 /// Traces paths for one thread.
 #[derive(Debug)]
@@ -38,6 +36,8 @@ pub struct PathTracer<'a> {
     pub caster: RayCaster<'a>,
     /// Caustics; without a map, paths find them.
     photon_map: Option<&'a PhotonMap>,
+    /// Light on matte surfaces after a bounce; without a cache, paths find all of it.
+    pub irradiance_cache: Option<&'a IrradianceCache>,
 }
 
 /// The state of a path between two vertices.
@@ -61,6 +61,8 @@ pub struct PathState {
     has_seen: bool,
     /// Length of the way from the camera to the first non-specular vertex, metres.
     camera_distance: f32,
+    /// Solid angle for which the last sample stands: one over its density, sr; 0 after specular scattering.
+    pub sample_solid_angle: f32,
     /// Vertices so far.
     pub depth: u32,
     /// Non-specular vertices so far.
@@ -99,7 +101,7 @@ pub struct SoftPoint<'a> {
 
 /// The light sampling at a vertex.
 #[derive(Clone, Copy, Debug)]
-enum LightSampling {
+pub enum LightSampling {
     /// Lights are sampled for this path.
     Sample,
     /// Lights were sampled once for so many paths.
@@ -108,10 +110,44 @@ enum LightSampling {
     Skip,
 }
 
+impl PathState {
+    /// A path along its first ray, for tests.
+    #[cfg(test)]
+    pub fn at(origin: Vec3, direction: Vec3) -> Self {
+        PathState::new(origin, direction, MisVertex::new(origin, direction))
+    }
+
+    /// A path along its first ray.
+    fn new(origin: Vec3, direction: Vec3, mis_vertex: MisVertex) -> Self {
+        PathState {
+            ray: Ray { origin, direction, t_max: f32::INFINITY },
+            throughput: Vec3::ONE,
+            roulette_scale: 1.0,
+            media: MediumStack::default(),
+            polarisation: Polarisation::NONE,
+            mis_vertex,
+            gather: None,
+            split_factor: 1.0,
+            has_seen: false,
+            camera_distance: 0.0,
+            sample_solid_angle: 0.0,
+            depth: 0,
+            non_specular_depth: 0,
+        }
+    }
+}
+
 impl<'a> PathTracer<'a> {
     /// A tracer for a scene, with caustics from a photon map or without.
     pub fn new(scene: &'a RenderScene, photon_map: Option<&'a PhotonMap>) -> Self {
-        PathTracer { caster: RayCaster::with_photon_caustics(scene, photon_map.is_some()), photon_map }
+        let caster = RayCaster::with_photon_caustics(scene, photon_map.is_some());
+        PathTracer { caster, photon_map, irradiance_cache: None }
+    }
+
+    /// A tracer for a scene and what the samples of a pass share.
+    pub fn with_shared_light(scene: &'a RenderScene, shared: &'a SharedLight) -> Self {
+        let irradiance_cache = shared.irradiance_cache.as_ref();
+        PathTracer { irradiance_cache, ..PathTracer::new(scene, shared.photon_map.as_ref()) }
     }
 
     /// Traces a path along a camera ray and adds its contributions to `sink`.
@@ -152,21 +188,36 @@ impl<'a> PathTracer<'a> {
         sink: &mut impl RadianceSink,
     ) {
         sink.record(|| PathEvent::CameraRay { origin, direction });
-        let mut path = PathState {
-            ray: Ray { origin, direction, t_max: f32::INFINITY },
-            throughput: Vec3::ONE,
-            roulette_scale: 1.0,
-            media: MediumStack::default(),
-            polarisation: Polarisation::NONE,
-            mis_vertex,
-            gather,
-            split_factor: 1.0,
-            has_seen: false,
-            camera_distance: 0.0,
-            depth: 0,
-            non_specular_depth: 0,
-        };
+        let mut path = PathState { gather, ..PathState::new(origin, direction, mis_vertex) };
         self.extend(&mut path, sampler, limits, sink);
+    }
+
+    /// Traces a path that starts on a surface, as scattered by a BSDF.
+    pub fn trace_from_surface(
+        &mut self,
+        (hit, surface): (&Hit, &SurfaceInteraction),
+        bsdf: &Bsdf<'_>,
+        sampler: &Sampler,
+        limits: PathLimits,
+        sink: &mut impl RadianceSink,
+    ) {
+        let normal = surface.geometric_normal;
+        let mis_vertex = MisVertex::new(surface.position, normal);
+        let mut path = PathState { has_seen: true, ..PathState::new(surface.position, -normal, mis_vertex) };
+        let point = ShadingPoint {
+            hit,
+            surface,
+            bsdf,
+            importances: None,
+            control: None,
+            lobe_choice: None,
+            distance: 0.0,
+            outside: true,
+        };
+        self.gather_photons(&path, surface, bsdf, limits, sink);
+        if self.scatter(&mut path, &point, LightSampling::Sample, sampler, limits, sink) {
+            self.extend(&mut path, sampler, limits, sink);
+        }
     }
 
     /// Extends a path, vertex by vertex, to its end, and all paths into which it splits.
@@ -251,7 +302,13 @@ impl<'a> PathTracer<'a> {
                 sink.record(|| PathEvent::End(PathEnd::Depth));
                 return;
             }
-            let bsdf = scene.bsdf(&surface, wo, &path.media, path.polarisation);
+            let mut bsdf = scene.bsdf(&surface, wo, &path.media, path.polarisation);
+
+            // Take diffuse light from the cache
+            let query = CacheQuery { surface: &surface, wo, distance };
+            if !self.take_cached_light(path, query, &mut bsdf, sink) {
+                return;
+            }
             let point = ShadingPoint {
                 hit,
                 surface: &surface,
@@ -321,70 +378,9 @@ impl<'a> PathTracer<'a> {
         });
     }
 
-    /// Continues with several paths from a vertex. Where all lights are sampled, one light sample serves all paths.
-    fn split_path(
-        &mut self,
-        path: &mut PathState,
-        point: &ShadingPoint<'_>,
-        paths: u32,
-        sampler: &Sampler,
-        limits: PathLimits,
-        sink: &mut impl RadianceSink,
-    ) {
-        sink.record(|| PathEvent::PathSplit { paths });
-        let split_factor = paths as f32;
-
-        // Sample all lights once, or compute their importances once
-        let mut importances = None;
-        let lights = if self.samples_all_lights(path) {
-            let set = sampler.set(Dimensions::Light { slot: 0, depth: path.depth });
-            self.sample_lights(path, point, sampler, &set, split_factor, sink);
-            LightSampling::Shared { paths: split_factor }
-        } else {
-            importances = self.light_importances(point);
-            LightSampling::Sample
-        };
-
-        // Divide the throughput among the paths
-        let point = &ShadingPoint { importances: importances.as_ref(), ..*point };
-        path.throughput /= split_factor;
-        path.roulette_scale /= split_factor;
-        for index in 0..paths {
-            sink.record(|| PathEvent::Branch { index });
-            let (mut path, sampler) = (*path, sampler.split(index, paths));
-            if self.scatter(&mut path, point, lights, &sampler, limits, sink) {
-                self.extend(&mut path, &sampler, PathLimits { split_factor: 1, ..limits }, sink);
-            }
-        }
-    }
-
-    /// Continues with both reflection and transmission at clear glass.
-    fn split_dielectric(
-        &mut self,
-        path: &PathState,
-        point: &ShadingPoint<'_>,
-        reflectance: f32,
-        sampler: &Sampler,
-        limits: PathLimits,
-        sink: &mut impl RadianceSink,
-    ) {
-        sink.record(|| PathEvent::DielectricSplit { reflectance });
-        for (index, (lobe_choice, part)) in [(0.0, reflectance), (BELOW_ONE, 1.0 - reflectance)].into_iter().enumerate()
-        {
-            sink.record(|| PathEvent::Branch { index: index as u32 });
-            let split_factor = if part < MIN_SPLIT_THROUGHPUT { 1 } else { limits.split_factor };
-            let mut path = PathState { throughput: path.throughput * part, ..*path };
-            path.roulette_scale *= part;
-            let point = &ShadingPoint { lobe_choice: Some(lobe_choice), ..*point };
-            if part > 0.0 && self.scatter(&mut path, point, LightSampling::Skip, sampler, limits, sink) {
-                self.extend(&mut path, sampler, PathLimits { split_factor, ..limits }, sink);
-            }
-        }
-    }
-
     /// Samples the lights and the BSDF at a vertex and updates the path to leave it. Returns false if the path ends.
     #[inline(always)]
-    fn scatter(
+    pub fn scatter(
         &mut self,
         path: &mut PathState,
         point: &ShadingPoint<'_>,
@@ -436,6 +432,7 @@ impl<'a> PathTracer<'a> {
         // Update the throughput, the polarisation and the media
         path.throughput *= sample.weight;
         path.roulette_scale *= sample.eta_scale;
+        path.sample_solid_angle = if sample.specular { 0.0 } else { 1.0 / sample.pdf };
         path.polarisation = sample.polarisation;
         if sample.is_transmission && !surface.is_thin {
             path.media.cross(surface.material, outside);

@@ -17,6 +17,8 @@ const SPLIT_FACTOR: u32 = 4;
 /// 0.80 in the five studios three_point, rembrandt, high_key, group and butterfly; 1.13 to 1.5 in scenes without hair
 /// and skin.
 const NO_SPLIT: u32 = 1;
+/// Largest reflectance from which on an irradiance cache may pay.
+const MIN_CACHED_ALBEDO: f32 = 0.5;
 /// Maximum depth in the whitest room: what the largest reflectance (0.999) needs. Russian roulette ends most paths long
 /// before; a lower limit would darken white rooms (at 64, one of 0.95 by 4 %).
 const MAX_DEPTH: u32 = 6300;
@@ -46,6 +48,8 @@ pub struct RenderPlan {
     pub sample_all_lights: bool,
     /// Caustics come from photons.
     pub photons: bool,
+    /// Where paths stay bright, light on matte surfaces after a bounce comes from an irradiance cache.
+    pub irradiance_cache: bool,
     /// Number of paths from the first non-specular vertex.
     pub split_factor: u32,
     /// Maximum number of scattering events of a path.
@@ -73,11 +77,13 @@ pub enum Shortcut {
     PathSplitting,
     /// Caustics come from photons.
     Photons,
+    /// Light on matte surfaces after a bounce comes from an irradiance cache.
+    IrradianceCache,
 }
 
 impl Shortcut {
     /// All shortcuts.
-    pub const ALL: [Shortcut; 8] = [
+    pub const ALL: [Shortcut; 9] = [
         Shortcut::NoEmitterHits,
         Shortcut::NoRefraction,
         Shortcut::NoSubsurface,
@@ -86,6 +92,7 @@ impl Shortcut {
         Shortcut::LimitedDepth,
         Shortcut::PathSplitting,
         Shortcut::Photons,
+        Shortcut::IrradianceCache,
     ];
 
     /// Name on the chart.
@@ -99,6 +106,7 @@ impl Shortcut {
             Shortcut::LimitedDepth => "depth from the largest reflectance",
             Shortcut::PathSplitting => "path splitting at the first surface",
             Shortcut::Photons => "caustics from photons",
+            Shortcut::IrradianceCache => "bounced light from a cache",
         }
     }
 }
@@ -115,6 +123,7 @@ impl RenderPlan {
             Shortcut::LimitedDepth => self.max_depth = MAX_DEPTH,
             Shortcut::PathSplitting => self.split_factor = 1,
             Shortcut::Photons => self.photons = false,
+            Shortcut::IrradianceCache => self.irradiance_cache = false,
         }
         self
     }
@@ -196,6 +205,10 @@ impl RenderPlan {
         let albedo = materials.iter().map(TracedMaterial::max_albedo).fold(0.0, f32::max);
         let max_depth = depth_for(albedo) + if refraction { REFRACTION_DEPTH } else { 0 };
         reasons.push(format!("largest reflectance {albedo:.2}: less than 1/512 is left after {max_depth} bounces"));
+        let irradiance_cache = albedo >= MIN_CACHED_ALBEDO;
+        if irradiance_cache {
+            reasons.push("bright surfaces: in a closed room, light that bounced before comes from a cache".to_owned());
+        }
         let split_factor = if strands > 0 || subsurface { NO_SPLIT } else { SPLIT_FACTOR };
         reasons.push(match split_factor {
             NO_SPLIT => {
@@ -213,6 +226,7 @@ impl RenderPlan {
             lens: has_aperture,
             sample_all_lights,
             photons,
+            irradiance_cache,
             split_factor,
             max_depth,
             reasons,

@@ -1,12 +1,11 @@
 //! The render loop: sample passes over the tiles of a film.
 
-use super::caustics::PhotonMap;
 use super::control::RenderControl;
 use super::film::{Film, FilmTile};
 use super::lens::FilmCamera;
 use super::limits::PathLimits;
 use super::noise_target::NoiseTarget;
-use super::passes::{self, PassSchedule, RenderPhotons, SamplePass};
+use super::passes::{self, PassSchedule, SamplePass, SharedLight, SharedLightTracer};
 use super::path_tracer::PathTracer;
 use super::pixel_sampler::PixelSampler;
 use super::render_scene::RenderScene;
@@ -42,13 +41,13 @@ pub fn resume(
     on_pass: &mut dyn FnMut(&Film) -> ControlFlow<()>,
 ) -> Film {
     let camera = scene.lens.film_camera(settings.width, settings.height);
-    let photons = RenderPhotons::new(scene, settings, control);
+    let light_tracer = SharedLightTracer::new(scene, settings, control);
     let target = NoiseTarget::of(settings);
     // Each pass adds samples to the noisiest tile.
     let taken = film.most_spp();
     for pass in PassSchedule::new(scene, settings).passes().skip_while(|pass| pass.first_sample < taken) {
-        let photon_map = photons.trace(pass, control);
-        let job = TileJob { scene, photon_map: photon_map.as_ref(), camera: &camera, settings, control, pass };
+        let shared_light = &light_tracer.trace(pass, control);
+        let job = TileJob { scene, shared_light, camera: &camera, settings, control, pass };
         let needs_samples = |tile: &&mut Arc<FilmTile>| target.is_none_or(|target| !target.is_met(tile));
         let mut noisy: Vec<&mut Arc<FilmTile>> = film.tiles_mut().iter_mut().filter(needs_samples).collect();
         if noisy.is_empty() || !noisy.par_iter_mut().with_max_len(1).all(|tile| job.run(Arc::make_mut(tile))) {
@@ -64,7 +63,7 @@ pub fn resume(
 /// A pass of one tile.
 pub(super) struct TileJob<'a> {
     pub scene: &'a RenderScene,
-    pub photon_map: Option<&'a PhotonMap>,
+    pub shared_light: &'a SharedLight,
     pub camera: &'a FilmCamera,
     pub settings: &'a Settings,
     pub control: &'a RenderControl,
@@ -92,7 +91,7 @@ impl TileJob<'_> {
         let view_axis = self.camera.forward();
         let limits = PathLimits::new(method, self.scene.plan(), max_depth);
         let in_moment = |scene| {
-            let tracer = PathTracer::new(scene, self.photon_map);
+            let tracer = PathTracer::with_shared_light(scene, self.shared_light);
             PixelSampler { tracer, camera: self.camera, method, limits }
         };
         let mut pixel_samplers: Vec<_> = self.scene.moments().iter().map(in_moment).collect();

@@ -1,11 +1,11 @@
 //! Renders some of the samples of a picture, for farms: parts of it are rendered apart and merged.
 //!
 //! The samples are those of one render of the whole: a sample is a function of pixel, index and seed, and a pass has
-//! the photons that it has there, however its samples are divided.
+//! the photons and the cache that it has there, however its samples are divided.
 
 use super::control::RenderControl;
 use super::film_part::FilmPart;
-use super::passes::{PassSchedule, RenderPhotons, SamplePass};
+use super::passes::{PassSchedule, SamplePass, SharedLightTracer};
 use super::render::{TileJob, empty_film};
 use super::render_scene::RenderScene;
 use super::settings::Settings;
@@ -27,17 +27,17 @@ pub fn render_part(
 ) -> FilmPart {
     let camera = scene.lens.film_camera(settings.width, settings.height);
     let mut part = FilmPart::new(&empty_film(scene, settings), studio, settings.aovs);
-    let photons = RenderPhotons::new(scene, settings, control);
+    let light_tracer = SharedLightTracer::new(scene, settings, control);
     for pass in PassSchedule::new(scene, settings).passes() {
         let (first, end) = (pass.first_sample.max(range.start), (pass.first_sample + pass.samples).min(range.end));
         if first >= end {
             continue;
         }
-        // Trace the photons of the whole pass: they are the same in every part that has samples of it
-        let photon_map = photons.trace(pass, control);
+        // Trace the shared light of the whole pass: it is the same in every part that has samples of it
+        let shared_light = &light_tracer.trace(pass, control);
         for index in first..end {
             let pass = SamplePass { first_sample: index, samples: 1 };
-            let job = TileJob { scene, photon_map: photon_map.as_ref(), camera: &camera, settings, control, pass };
+            let job = TileJob { scene, shared_light, camera: &camera, settings, control, pass };
             let mut sample = empty_film(scene, settings);
             let tiles = sample.tiles_mut();
             if !tiles.par_iter_mut().with_max_len(1).all(|tile| job.run(Arc::make_mut(tile))) {

@@ -1,12 +1,11 @@
 //! Replay: one sample of one pixel, traced again with every step recorded.
 
-use super::caustics::PhotonMap;
 use super::control::RenderControl;
 use super::events::PathEvent;
 use super::film::{Layer, NonFiniteGate, NonFiniteReport};
 use super::lens::FilmCamera;
 use super::limits::PathLimits;
-use super::passes::{PassSchedule, RenderPhotons, SamplePass};
+use super::passes::{PassSchedule, SamplePass, SharedLight, SharedLightTracer};
 use super::path_tracer::PathTracer;
 use super::pixel_sampler::PixelSampler;
 use super::render_scene::RenderScene;
@@ -47,8 +46,8 @@ pub fn replay(scene: &RenderScene, settings: &Settings, (x, y): (u32, u32), inde
     let mut nonfinite = NonFiniteReport::default();
     let gate = NonFiniteGate { sink: SampleSums::new(scene), sample, report: &mut nonfinite };
     let mut recorder = Recorder { gate, origin: scene.origin, events: Vec::new() };
-    let photons = RenderPhotons::new(scene, settings, &RenderControl::new());
-    PassReplay::new(scene, settings, &photons, pass).trace(sample, &mut recorder);
+    let light_tracer = SharedLightTracer::new(scene, settings, &RenderControl::new());
+    PassReplay::new(scene, settings, &light_tracer, pass).trace(sample, &mut recorder);
     let Recorder { gate, events, .. } = recorder;
     let sums = gate.sink.sums;
     Some(Replay { sample, events, sums, nonfinite })
@@ -57,9 +56,9 @@ pub fn replay(scene: &RenderScene, settings: &Settings, (x, y): (u32, u32), inde
 /// Index of the brightest sample of a pixel; of the first with a non-finite contribution, if there is one.
 pub fn brightest_sample(scene: &RenderScene, settings: &Settings, (x, y): (u32, u32)) -> u32 {
     let mut brightest = (0, f32::NEG_INFINITY);
-    let photons = RenderPhotons::new(scene, settings, &RenderControl::new());
+    let light_tracer = SharedLightTracer::new(scene, settings, &RenderControl::new());
     for pass in PassSchedule::new(scene, settings).passes() {
-        let replay = PassReplay::new(scene, settings, &photons, pass);
+        let replay = PassReplay::new(scene, settings, &light_tracer, pass);
         for index in pass.first_sample..pass.first_sample + pass.samples {
             let sample = SampleId { x, y, index, seed: settings.seed };
             let mut report = NonFiniteReport::default();
@@ -82,20 +81,25 @@ struct PassReplay<'a> {
     scene: &'a RenderScene,
     settings: &'a Settings,
     camera: FilmCamera,
-    photon_map: Option<PhotonMap>,
+    shared_light: SharedLight,
 }
 
 impl<'a> PassReplay<'a> {
-    fn new(scene: &'a RenderScene, settings: &'a Settings, photons: &RenderPhotons<'_>, pass: SamplePass) -> Self {
+    fn new(
+        scene: &'a RenderScene,
+        settings: &'a Settings,
+        light_tracer: &SharedLightTracer<'_>,
+        pass: SamplePass,
+    ) -> Self {
         let camera = scene.lens.film_camera(settings.width, settings.height);
-        let photon_map = photons.trace(pass, &RenderControl::new());
-        PassReplay { scene, settings, camera, photon_map }
+        let shared_light = light_tracer.trace(pass, &RenderControl::new());
+        PassReplay { scene, settings, camera, shared_light }
     }
 
     fn trace(&self, sample: SampleId, sink: &mut impl RadianceSink) {
         let Settings { method, max_depth, .. } = *self.settings;
         let moment = self.scene.moment_of(&Sampler::of(sample));
-        let tracer = PathTracer::new(&self.scene.moments()[moment], self.photon_map.as_ref());
+        let tracer = PathTracer::with_shared_light(&self.scene.moments()[moment], &self.shared_light);
         let limits = PathLimits::new(method, self.scene.plan(), max_depth);
         PixelSampler { tracer, camera: &self.camera, method, limits }.sample(sample, sink);
     }

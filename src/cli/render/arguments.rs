@@ -43,6 +43,10 @@ pub struct Arguments {
     /// edges by a pixel or two, less the longer it renders; paths blur nothing and are noisy.
     #[arg(long, value_enum, default_value_t = Caustics::Photons)]
     caustics: Caustics,
+    /// Method for light on matte surfaces that bounced before, in bright closed rooms. A cache is several times as fast
+    /// and within 0.002 stops of the room; paths have no such error.
+    #[arg(long, value_enum, default_value_t = BouncedLight::Cache)]
+    bounced_light: BouncedLight,
     /// Minutes between checkpoints, which are written beside the picture (OUT.checkpoint) after a pass; 0 for none.
     #[arg(long, value_name = "MINUTES", default_value_t = 5.0, value_parser = not_negative)]
     checkpoint: f64,
@@ -92,6 +96,12 @@ pub struct Arguments {
 #[derive(Clone, Copy, Debug, PartialEq, ValueEnum)]
 enum Caustics {
     Photons,
+    Paths,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, ValueEnum)]
+enum BouncedLight {
+    Cache,
     Paths,
 }
 
@@ -201,9 +211,10 @@ impl Arguments {
         let variant = self.studio.variant.as_ref().map_or(String::new(), |name| format!(" --variant '{name}'"));
         let depth = self.max_depth.map_or(String::new(), |depth| format!(" --max-depth {depth}"));
         let caustics = if self.caustics == Caustics::Paths { " --caustics paths" } else { "" };
+        let bounced_light = if self.bounced_light == BouncedLight::Paths { " --bounced-light paths" } else { "" };
         format!(
-            "catchlight render '{scene}'{variant} --method {method} --size {width}x{height} --spp {spp}{depth}{caustics} \
-             --seed {seed} --explain-pixel {x},{y} --sample {index}"
+            "catchlight render '{scene}'{variant} --method {method} --size {width}x{height} --spp {spp}{depth}{caustics}\
+             {bounced_light} --seed {seed} --explain-pixel {x},{y} --sample {index}"
         )
     }
 
@@ -247,9 +258,11 @@ impl Arguments {
 
     /// Returns the shortcuts of the render plan that are not taken.
     pub fn without(&self) -> &'static [Shortcut] {
-        match self.caustics {
-            Caustics::Photons => &[],
-            Caustics::Paths => &[Shortcut::Photons],
+        match (self.caustics, self.bounced_light) {
+            (Caustics::Photons, BouncedLight::Cache) => &[],
+            (Caustics::Paths, BouncedLight::Cache) => &[Shortcut::Photons],
+            (Caustics::Photons, BouncedLight::Paths) => &[Shortcut::IrradianceCache],
+            (Caustics::Paths, BouncedLight::Paths) => &[Shortcut::Photons, Shortcut::IrradianceCache],
         }
     }
 }

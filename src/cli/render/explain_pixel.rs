@@ -130,6 +130,9 @@ impl Names<'_> {
                     triple(*throughput)
                 )
             }
+            PathEvent::CachedLight { cell_m } => {
+                format!("  diffuse light from a cell of {cell_m} m of the irradiance cache")
+            }
             PathEvent::PathSplit { paths } => format!("  split into {paths} paths"),
             PathEvent::DielectricSplit { reflectance } => {
                 format!("  split into reflection ({reflectance}) and transmission")
@@ -181,5 +184,6 @@ fn end_name(end: PathEnd) -> &'static str {
         PathEnd::Depth => "maximum depth",
         PathEnd::Absorbed => "no direction carries light",
         PathEnd::Roulette => "Russian roulette",
+        PathEnd::Cached => "all its light is from the irradiance cache",
     }
 }

@@ -177,6 +177,23 @@ impl<'a> Bsdf<'a> {
         }
     }
 
+    /// Returns the diffuse reflectance of a plain matte base under its coat, towards the outgoing direction: the factor on
+    /// the light of [`Bsdf::at_exit`]. None for textured gloss, relief, walks, layers, clear materials and fibres.
+    pub fn matte_factor(&self) -> Option<Vec3> {
+        match self {
+            Bsdf::Surface(surface) => surface.matte_factor(),
+            Bsdf::Layered(_) | Bsdf::Fibre(_) => None,
+        }
+    }
+
+    /// Removes the diffuse lobe of a BSDF with a [`Bsdf::matte_factor`]. Returns true if there is a coat or metal left.
+    pub fn remove_matte_base(&mut self) -> bool {
+        match self {
+            Bsdf::Surface(surface) => surface.remove_matte_base(),
+            Bsdf::Layered(_) | Bsdf::Fibre(_) => true,
+        }
+    }
+
     /// Returns the BSDF where a walk under the surface comes out: a diffuse lobe under the coat, for any outgoing
     /// direction.
     pub fn at_exit(material: &'a TracedMaterial, normal: Vec3, geometric_normal: Vec3) -> Self {

@@ -86,6 +86,21 @@ impl<'a> SurfaceBsdf<'a> {
         self.point.has_non_specular_lobe()
     }
 
+    /// Returns the diffuse reflectance of a plain matte base under its coat, towards the outgoing direction.
+    pub fn matte_factor(&self) -> Option<Vec3> {
+        let MaterialPoint { material, metallic, transmission, base_color, .. } = self.point;
+        let is_plain =
+            self.probabilities.base == Lobe::Diffuse && !self.has_relief() && material.mapped_gloss.is_none();
+        (is_plain && metallic < 1.0 && transmission <= 0.0).then(|| base_color * self.coat_transmission())
+    }
+
+    /// Removes the diffuse lobe. Returns true if there is a coat or metal left.
+    pub fn remove_matte_base(&mut self) -> bool {
+        self.diffuse.factor = Vec3::ZERO;
+        self.probabilities.microfacet = 1.0;
+        self.point.has_microfacets()
+    }
+
     /// Returns BSDF times cosine, and the density of [`SurfaceBsdf::sample`] (1/sr), for a unit world direction. Delta lobes
     /// are left out of both.
     pub fn eval(&self, direction: Vec3) -> (Vec3, f32) {

@@ -1,14 +1,12 @@
 //! The surfaces on which the camera sees caustics: a coarse raster of camera paths to their non-specular vertices.
 
 use super::grid::{HashGrid, Positioned};
-use crate::math::{Ray, quantile};
-use crate::raytrace::bsdf::Polarisation;
+use crate::math::quantile;
 use crate::raytrace::lens::{PixelCamera, camera_ray};
-use crate::raytrace::medium_stack::MediumStack;
+use crate::raytrace::pilot_path::{self, PilotVertex};
 use crate::raytrace::ray_caster::RayCaster;
-use crate::raytrace::ray_filter::RayFilter;
 use crate::raytrace::render_scene::RenderScene;
-use crate::raytrace::sampler::{self, Dimensions, Sampler};
+use crate::raytrace::sampler::Sampler;
 use glam::Vec3;
 use std::collections::BTreeMap;
 
@@ -67,10 +65,13 @@ impl VisiblePoints {
         for cell in 0..across * down {
             let at = |index: u32| ((f64::from(index) + 0.5) * stride) as u32;
             let sampler = Sampler::new(at(cell % across), at(cell / across), 0, 0);
-            let (origin, direction) = camera_ray(camera, &sampler);
-            trace_path(&mut caster, origin, direction, &sampler, |position, distance, cos| {
-                let radius = RADIUS_SPACINGS * spacing * distance / cos.max(MIN_COSINE);
-                points.push(VisiblePoint { position, distance, radius });
+            pilot_path::trace(&mut caster, camera_ray(camera, &sampler), &sampler, 0, |vertex| {
+                let PilotVertex { surface, wo, travelled: distance, .. } = *vertex;
+                if surface.strand.is_none() && scene.materials[surface.material as usize].has_non_specular_lobe() {
+                    let cos = wo.dot(surface.geometric_normal).abs();
+                    let radius = RADIUS_SPACINGS * spacing * distance / cos.max(MIN_COSINE);
+                    points.push(VisiblePoint { position: surface.position, distance, radius });
+                }
             });
         }
         VisiblePoints(points)
@@ -115,38 +116,5 @@ impl Surroundings {
             grid.points.near(position, grid.radius).any(|(point, distance2)| distance2 < point.radius * point.radius)
         };
         self.grids.iter().any(near)
-    }
-}
-
-/// Follows a camera path through specular surfaces. Calls `found` with the position, the length of the way and the
-/// cosine to the surface of each non-specular vertex.
-fn trace_path(
-    caster: &mut RayCaster<'_>,
-    origin: Vec3,
-    direction: Vec3,
-    sampler: &Sampler,
-    mut found: impl FnMut(Vec3, f32, f32),
-) {
-    let scene = caster.scene;
-    let mut ray = Ray { origin, direction, t_max: f32::INFINITY };
-    let (mut media, mut polarisation, mut travelled) = (MediumStack::default(), Polarisation::NONE, 0.0);
-    for depth in 0..scene.plan().max_depth {
-        let Some(hit) = caster.intersect_filtered(&ray, RayFilter::of_path(depth, 0)) else { return };
-        let surface = scene.surface(&ray, &hit);
-        travelled += hit.t;
-        let wo = -ray.direction;
-        let cos = wo.dot(surface.geometric_normal);
-        if surface.strand.is_none() && scene.materials[surface.material as usize].has_non_specular_lobe() {
-            found(surface.position, travelled, cos.abs());
-        }
-        let set = sampler.set(Dimensions::Bsdf { depth });
-        let bsdf = scene.bsdf(&surface, wo, &media, polarisation);
-        let sample = bsdf.sample(sampler::last_pair(&set)[0], sampler::first_pair(&set));
-        let Some(sample) = sample.filter(|sample| sample.specular) else { return };
-        if sample.is_transmission && !surface.is_thin {
-            media.cross(surface.material, cos >= 0.0);
-        }
-        polarisation = sample.polarisation;
-        ray = Ray { origin: surface.spawn_origin(sample.direction), direction: sample.direction, t_max: f32::INFINITY };
     }
 }

@@ -1,0 +1,67 @@
+//! Pilot paths: camera paths that find surfaces and gather no light, for what is learned about a picture beforehand.
+
+use super::aggregate::Hit;
+use super::bsdf::{Bsdf, Polarisation};
+use super::geometry::SurfaceInteraction;
+use super::medium_stack::MediumStack;
+use super::ray_caster::RayCaster;
+use super::ray_filter::RayFilter;
+use super::sampler::{self, Dimensions, Sampler};
+use crate::math::Ray;
+use glam::Vec3;
+
+/// A vertex of a pilot path.
+#[derive(Debug)]
+pub struct PilotVertex<'a> {
+    /// The intersection.
+    pub hit: &'a Hit,
+    /// The surface.
+    pub surface: &'a SurfaceInteraction,
+    /// Its BSDF towards the last vertex.
+    pub bsdf: &'a Bsdf<'a>,
+    /// Unit direction towards the last vertex.
+    pub wo: Vec3,
+    /// Length of the way from the camera, metres.
+    pub travelled: f32,
+    /// Radiance that the path carries per radiance at its end.
+    pub throughput: Vec3,
+    /// Non-specular vertices before it.
+    pub non_specular_depth: u32,
+}
+
+/// Follows a path from the camera, specular or not, past at most `max_scatterings` non-specular vertices. Calls `found`
+/// with each vertex.
+pub fn trace(
+    caster: &mut RayCaster<'_>,
+    (origin, direction): (Vec3, Vec3),
+    sampler: &Sampler,
+    max_scatterings: u32,
+    mut found: impl FnMut(&PilotVertex<'_>),
+) {
+    let scene = caster.scene;
+    let mut ray = Ray { origin, direction, t_max: f32::INFINITY };
+    let (mut media, mut polarisation) = (MediumStack::default(), Polarisation::NONE);
+    let (mut travelled, mut throughput, mut non_specular_depth) = (0.0, Vec3::ONE, 0);
+    for depth in 0..scene.plan().max_depth {
+        let Some(hit) = caster.intersect_filtered(&ray, RayFilter::of_path(depth, non_specular_depth)) else { return };
+        let surface = &scene.surface(&ray, &hit);
+        let wo = -ray.direction;
+        let bsdf = &scene.bsdf(surface, wo, &media, polarisation);
+        travelled += hit.t;
+        found(&PilotVertex { hit: &hit, surface, bsdf, wo, travelled, throughput, non_specular_depth });
+        let set = sampler.set(Dimensions::Bsdf { depth });
+        let Some(sample) = bsdf.sample(sampler::last_pair(&set)[0], sampler::first_pair(&set)) else { return };
+        if !sample.specular {
+            non_specular_depth += 1;
+            if non_specular_depth > max_scatterings {
+                return;
+            }
+        }
+        if sample.is_transmission && !surface.is_thin {
+            media.cross(surface.material, wo.dot(surface.geometric_normal) >= 0.0);
+        }
+        polarisation = sample.polarisation;
+        throughput *= sample.weight;
+        ray = Ray { origin: surface.spawn_origin(sample.direction), direction: sample.direction, t_max: f32::INFINITY };
+    }
+}
