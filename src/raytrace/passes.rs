@@ -3,7 +3,8 @@
 
 use super::caustics::{CausticView, MIN_PHOTONS, PhotonMap, PhotonPass};
 use super::control::RenderControl;
-use super::irradiance_cache::{CachePoints, IrradianceCache};
+use super::irradiance_cache::{self, IrradianceCache};
+use super::lens::FilmCamera;
 use super::render_scene::RenderScene;
 use super::settings::{Method, Settings};
 use std::sync::Arc;
@@ -81,12 +82,13 @@ pub struct SharedLightTracer<'a> {
     settings: &'a Settings,
     /// Visible surfaces and density of starts. None for a render without photons.
     view: Option<Arc<CausticView>>,
-    /// Surfaces that paths meet after a bounce. None for a render without a cache.
-    points: Option<CachePoints>,
+    camera: FilmCamera,
+    /// There is a cache of bounced light.
+    is_cached: bool,
 }
 
 impl<'a> SharedLightTracer<'a> {
-    /// Learns where photons start and which surfaces have cached light, if the render has any. Of no use if `control` is
+    /// Learns where photons start, if the render has any, and whether a cache pays. Of no use if `control` is
     /// cancelled.
     pub fn new(scene: &'a RenderScene, settings: &'a Settings, control: &RenderControl) -> Self {
         let camera = scene.lens.film_camera(settings.width, settings.height);
@@ -94,8 +96,8 @@ impl<'a> SharedLightTracer<'a> {
             let photons = settings.pixels() * u64::from(settings.spp);
             Arc::new(CausticView::learn(scene, &camera, photons, settings.seed, control))
         });
-        let points = may_use_cache(scene, settings).then(|| CachePoints::find(scene, &camera)).flatten();
-        SharedLightTracer { scene, settings, view, points }
+        let is_cached = may_use_cache(scene, settings) && irradiance_cache::pays(scene, &camera);
+        SharedLightTracer { scene, settings, view, camera, is_cached }
     }
 
     /// Traces the shared light of a pass. Incomplete if `control` is cancelled.
@@ -105,8 +107,8 @@ impl<'a> SharedLightTracer<'a> {
         let photons = MIN_PHOTONS.max(self.settings.pixels() * u64::from(samples));
         let photon_pass = PhotonPass { first_sample, samples, photons, seed };
         let photon_map = self.view.as_ref().map(|view| PhotonMap::trace(scene, &photon_pass, view, control));
-        let points = self.points.as_ref();
-        let irradiance_cache = points.map(|points| points.trace(scene, photon_map.as_ref(), pass, seed, control));
+        let cached = || IrradianceCache::trace(scene, &self.camera, photon_map.as_ref(), pass, seed, control);
+        let irradiance_cache = self.is_cached.then(cached);
         SharedLight { photon_map, irradiance_cache }
     }
 }

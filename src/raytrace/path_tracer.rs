@@ -111,14 +111,8 @@ pub enum LightSampling {
 }
 
 impl PathState {
-    /// A path along its first ray, for tests.
-    #[cfg(test)]
-    pub fn at(origin: Vec3, direction: Vec3) -> Self {
-        PathState::new(origin, direction, MisVertex::new(origin, direction))
-    }
-
     /// A path along its first ray.
-    fn new(origin: Vec3, direction: Vec3, mis_vertex: MisVertex) -> Self {
+    pub fn new(origin: Vec3, direction: Vec3, mis_vertex: MisVertex) -> Self {
         PathState {
             ray: Ray { origin, direction, t_max: f32::INFINITY },
             throughput: Vec3::ONE,
@@ -192,7 +186,7 @@ impl<'a> PathTracer<'a> {
         self.extend(&mut path, sampler, limits, sink);
     }
 
-    /// Traces a path that starts on a surface, as scattered by a BSDF.
+    /// Traces a path that starts on a surface, as scattered by a BSDF, and is one that the camera sees after a bounce.
     pub fn trace_from_surface(
         &mut self,
         (hit, surface): (&Hit, &SurfaceInteraction),
@@ -203,7 +197,14 @@ impl<'a> PathTracer<'a> {
     ) {
         let normal = surface.geometric_normal;
         let mis_vertex = MisVertex::new(surface.position, normal);
-        let mut path = PathState { has_seen: true, ..PathState::new(surface.position, -normal, mis_vertex) };
+        let mut path = PathState {
+            has_seen: true,
+            // The camera is the origin
+            camera_distance: surface.position.length(),
+            depth: 1,
+            non_specular_depth: 1,
+            ..PathState::new(surface.position, -normal, mis_vertex)
+        };
         let point = ShadingPoint {
             hit,
             surface,

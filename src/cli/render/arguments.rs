@@ -44,7 +44,7 @@ pub struct Arguments {
     #[arg(long, value_enum, default_value_t = Caustics::Photons)]
     caustics: Caustics,
     /// Method for light on matte surfaces that bounced before, in bright closed rooms. A cache is several times as fast
-    /// and within 0.002 stops of the room; paths have no such error.
+    /// and within 0.001 stops of the room; paths have no such error.
     #[arg(long, value_enum, default_value_t = BouncedLight::Cache)]
     bounced_light: BouncedLight,
     /// Minutes between checkpoints, which are written beside the picture (OUT.checkpoint) after a pass; 0 for none.
