@@ -51,9 +51,11 @@ const MAX_POINTS: usize = 64;
 const PATHS_PER_SAMPLE: u32 = 2;
 /// Width of a path's sample, where it meets the surface, in cells, from which on it takes a cell.
 const MIN_FOOTPRINT_CELLS: f32 = 3.0;
-/// Part of a camera path's throughput that arrives at the third matte surface, from which on the cache pays: a room of
-/// white walls has 0.4 to 0.6, the shipped studios 0.001 to 0.11.
-const MIN_BRIGHTNESS: f32 = 0.25;
+/// Throughput with which camera paths arrive at the second matte surface, on average, below which there is no cache.
+const MIN_BOUNCED: f32 = 0.05;
+/// Part of it that is left at the third matte surface, from which on the cache pays: 0.5 to 0.7 in rooms with white
+/// walls, 0.01 to 0.26 in the shipped studios.
+const MIN_BRIGHTNESS: f32 = 0.4;
 /// Added to the seed, so that these paths and those of the picture have different random numbers.
 const SEED: u32 = 0x69_72_72_61;
 
@@ -90,11 +92,15 @@ impl CellKey {
     }
 }
 
-/// Returns true if the cache pays for a camera's picture: where much of the light is left after two bounces.
+/// Returns true if the cache pays for a camera's picture: where much of the light that bounced once bounces again.
 pub fn pays(scene: &RenderScene, camera: &FilmCamera) -> bool {
-    let at_third = |vertex: &PilotVertex<'_>| (vertex.non_specular_depth == 2).then(|| luminance(vertex.throughput));
-    let arriving = trace_pilots(scene, camera, PILOT_PATHS, 0, at_third);
-    arriving.iter().sum::<f32>() >= MIN_BRIGHTNESS * PILOT_PATHS as f32
+    let arriving = trace_pilots(scene, camera, PILOT_PATHS, 0, |vertex| {
+        (vertex.non_specular_depth > 0).then(|| (vertex.non_specular_depth, luminance(vertex.throughput)))
+    });
+    let sum = |depth| arriving.iter().filter(|(at, _)| *at == depth).map(|(_, throughput)| throughput).sum::<f32>();
+    let (second, third) = (sum(1), sum(2));
+    // Of little more than nothing, nothing can be said
+    second > MIN_BOUNCED * PILOT_PATHS as f32 && third >= MIN_BRIGHTNESS * second
 }
 
 /// Traces about so many pilot paths of a camera's picture, and returns what `found` has of their vertices.
@@ -131,7 +137,7 @@ impl CachePoints {
         let points = trace_pilots(scene, camera, paths, 1 + pass.first_sample, |vertex| {
             let is_outside = vertex.wo.dot(vertex.surface.geometric_normal) > 0.0;
             let is_cached = vertex.non_specular_depth > 0 && is_outside && vertex.bsdf.matte_factor().is_some();
-            is_cached.then(|| CachePoint { hit: *vertex.hit, surface: *vertex.surface })
+            is_cached.then_some(CachePoint { hit: *vertex.hit, surface: *vertex.surface })
         });
         CachePoints::in_cells(&points)
     }
