@@ -12,73 +12,25 @@
 //!
 //! Where it fails: light and shadow within a cell become one, which darkens or brightens what is near. So a path takes
 //! a cell only from afar, as seen by the width of its sample ([`MIN_FOOTPRINT_CELLS`]); the mean of a room is then
-//! right within 0.001 stops. The cache is used only where it pays ([`MIN_BRIGHTNESS`]), and not under normal maps, in
+//! right within 0.001 stops. The cache is used only where it pays (`irradiance_gather.rs`, which traces the
+//! cells), and not under normal maps, in
 //! water that moves while it is lit, or by the light meter.
 
-use super::aggregate::Hit;
 use super::bsdf::Bsdf;
-use super::caustics::PhotonMap;
-use super::control::RenderControl;
-use super::events::{PathEnd, PathEvent};
 use super::geometry::SurfaceInteraction;
-use super::lens::{FilmCamera, PixelCamera, camera_ray};
-use super::limits::PathLimits;
-use super::passes::SamplePass;
-use super::path_tracer::{PathState, PathTracer};
-use super::pilot_path::{self, PilotVertex};
-use super::ray_caster::RayCaster;
-use super::render_scene::RenderScene;
-use super::sampler::Sampler;
-use super::sink::RadianceSink;
-use crate::color::luminance;
 use glam::{IVec3, Vec3};
-use rayon::prelude::*;
-use std::collections::{BTreeMap, HashMap};
+use std::collections::HashMap;
 
-/// Camera paths that find the surfaces, for each sample of a pixel,
-const PILOT_PATHS: u32 = 1 << 14;
-/// for so many samples of a pass at most.
-const MOST_PILOTS: u32 = 2;
-/// Matte surfaces that a pilot path passes.
-const PILOT_SCATTERINGS: u32 = 3;
-/// Cells along the diagonal of the box around all points.
-const CELLS_ALONG_DIAGONAL: f32 = 40.0;
-/// Points without which a cell is left to paths.
-const MIN_POINTS: usize = 3;
-/// Points of a cell from which paths start, at most.
-const MAX_POINTS: usize = 64;
-/// Paths from each cell for each sample of a pixel. In a white room more of them take longer than they save.
-const PATHS_PER_SAMPLE: u32 = 2;
 /// Width of a path's sample, where it meets the surface, in cells, from which on it takes a cell.
 const MIN_FOOTPRINT_CELLS: f32 = 3.0;
-/// Throughput with which camera paths arrive at the second matte surface, on average, below which there is no cache.
-const MIN_BOUNCED: f32 = 0.05;
-/// Part of it that is left at the third matte surface, from which on the cache pays: 0.5 to 0.7 in rooms with white
-/// walls, 0.01 to 0.26 in the shipped studios.
-const MIN_BRIGHTNESS: f32 = 0.4;
-/// Added to the seed, so that these paths and those of the picture have different random numbers.
-const SEED: u32 = 0x69_72_72_61;
-
-/// Points on the surfaces that paths of a picture meet after a bounce, cell by cell.
-#[derive(Debug)]
-struct CachePoints {
-    cell_m: f32,
-    cells: Vec<(CellKey, Vec<CachePoint>)>,
-}
-
-/// A point on a surface.
-#[derive(Clone, Copy, Debug)]
-struct CachePoint {
-    hit: Hit,
-    surface: SurfaceInteraction,
-}
 
 /// A cube of space, a range of normals and a material.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-struct CellKey([i32; 5]);
+pub struct CellKey([i32; 5]);
 
 impl CellKey {
-    fn of(surface: &SurfaceInteraction, cell_m: f32) -> Self {
+    /// The cell of a surface.
+    pub fn of(surface: &SurfaceInteraction, cell_m: f32) -> Self {
         let IVec3 { x, y, z } = (surface.position / cell_m).floor().as_ivec3();
         // One of 26 directions: to the faces, edges and corners of a cube
         let normal = (1.5 * surface.normal).round().as_ivec3();
@@ -86,362 +38,42 @@ impl CellKey {
     }
 
     /// Two numbers for the random numbers of the cell's paths.
-    fn seeds(&self) -> (u32, u32) {
+    pub fn seeds(&self) -> (u32, u32) {
         let [x, y, z, normal, material] = self.0.map(i32::cast_unsigned);
         (x ^ z.rotate_left(16), y ^ normal.rotate_left(12) ^ material.rotate_left(20))
-    }
-}
-
-/// Returns true if the cache pays for a camera's picture: where much of the light that bounced once bounces again.
-pub fn pays(scene: &RenderScene, camera: &FilmCamera) -> bool {
-    let arriving = trace_pilots(scene, camera, PILOT_PATHS, 0, |vertex| {
-        (vertex.non_specular_depth > 0).then(|| (vertex.non_specular_depth, luminance(vertex.throughput)))
-    });
-    let sum = |depth| arriving.iter().filter(|(at, _)| *at == depth).map(|(_, throughput)| throughput).sum::<f32>();
-    let (second, third) = (sum(1), sum(2));
-    // Of little more than nothing, nothing can be said
-    second > MIN_BOUNCED * PILOT_PATHS as f32 && third >= MIN_BRIGHTNESS * second
-}
-
-/// Traces about so many pilot paths of a camera's picture, and returns what `found` has of their vertices.
-fn trace_pilots<T: Send>(
-    scene: &RenderScene,
-    camera: &FilmCamera,
-    paths: u32,
-    index: u32,
-    found: impl Fn(&PilotVertex<'_>) -> Option<T> + Sync,
-) -> Vec<T> {
-    let (width, height) = camera.size();
-    let stride = (f64::from(width) * f64::from(height) / f64::from(paths)).sqrt();
-    let (across, down) = ((f64::from(width) / stride) as u32, (f64::from(height) / stride) as u32);
-    let pixel = |place: u32| ((f64::from(place) + 0.5) * stride) as u32;
-    let row = |y: u32| {
-        let mut caster = RayCaster::new(scene);
-        let mut row = Vec::new();
-        for x in 0..across {
-            // Several paths of one pixel of a small picture differ by their seeds
-            let sampler = Sampler::new(pixel(x), pixel(y), index, SEED ^ (x + y * across));
-            pilot_path::trace(&mut caster, camera_ray(camera, &sampler), &sampler, PILOT_SCATTERINGS, |vertex| {
-                row.extend(found(vertex));
-            });
-        }
-        row
-    };
-    (0..down).into_par_iter().flat_map_iter(row).collect()
-}
-
-impl CachePoints {
-    /// Finds points for a pass. They are others in each pass, so that no spot of light is missed in all of them.
-    fn find(scene: &RenderScene, camera: &FilmCamera, pass: SamplePass) -> Self {
-        let paths = PILOT_PATHS * pass.samples.clamp(1, MOST_PILOTS);
-        let points = trace_pilots(scene, camera, paths, 1 + pass.first_sample, |vertex| {
-            let is_outside = vertex.wo.dot(vertex.surface.geometric_normal) > 0.0;
-            let is_cached = vertex.non_specular_depth > 0 && is_outside && vertex.bsdf.matte_factor().is_some();
-            is_cached.then_some(CachePoint { hit: *vertex.hit, surface: *vertex.surface })
-        });
-        CachePoints::in_cells(&points)
-    }
-
-    /// Divides points among cells.
-    fn in_cells(points: &[CachePoint]) -> Self {
-        let (low, high) = points.iter().fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(low, high), point| {
-            (low.min(point.surface.position), high.max(point.surface.position))
-        });
-        let cell_m = ((high - low).length() / CELLS_ALONG_DIAGONAL).max(f32::MIN_POSITIVE);
-        let mut cells: BTreeMap<CellKey, Vec<CachePoint>> = BTreeMap::new();
-        for point in points {
-            cells.entry(CellKey::of(&point.surface, cell_m)).or_default().push(*point);
-        }
-        cells.retain(|_, points| points.len() >= MIN_POINTS);
-        for points in cells.values_mut() {
-            let every = points.len().div_ceil(MAX_POINTS);
-            *points = points.iter().copied().step_by(every).collect();
-        }
-        CachePoints { cell_m, cells: cells.into_iter().collect() }
     }
 }
 
 /// The light of each cell in a pass.
 #[derive(Debug)]
 pub struct IrradianceCache {
-    cell_m: f32,
+    /// Size of a cell, metres.
+    pub cell_m: f32,
     /// Radiance of a white diffuse base, film layer by film layer.
-    cells: HashMap<CellKey, Vec<Vec3>>,
+    pub cells: HashMap<CellKey, Vec<Vec3>>,
 }
 
-/// Adds contributions to the layers of a cell.
-struct LayerSums<'a>(&'a mut [Vec3]);
-
-impl RadianceSink for LayerSums<'_> {
-    fn add(&mut self, layer: usize, value: Vec3) {
-        self.0[layer] += value;
-    }
-}
-
-/// A surface that a path meets, after so many metres from its last vertex.
+/// The part of a surface that a sample stands for.
 #[derive(Clone, Copy, Debug)]
-pub struct CacheQuery<'a> {
-    /// The surface.
-    pub surface: &'a SurfaceInteraction,
-    /// Unit direction towards the last vertex.
-    pub wo: Vec3,
-    /// Distance from it, metres.
-    pub distance: f32,
-}
+pub struct Footprint(f32);
 
-impl<'a> PathTracer<'a> {
-    /// Adds the cached diffuse light of a surface that a path meets, and leaves the rest of its BSDF. Without a cache,
-    /// or where the path has to find that light itself, nothing changes. Returns false if the path ends.
-    pub fn take_cached_light(
-        &self,
-        path: &PathState,
-        query: CacheQuery<'_>,
-        bsdf: &mut Bsdf<'_>,
-        sink: &mut impl RadianceSink,
-    ) -> bool {
-        let Some(cache) = self.irradiance_cache else { return true };
-        let Some((factor, light)) = cache.light_at(path, query, bsdf) else { return true };
-        sink.record(|| PathEvent::CachedLight { cell_m: cache.cell_m });
-        let factor = path.throughput * factor;
-        for (layer, light) in light.iter().enumerate().filter(|(_, light)| **light != Vec3::ZERO) {
-            sink.add(layer, factor * *light);
-        }
-        let goes_on = bsdf.remove_matte_base();
-        if !goes_on {
-            sink.record(|| PathEvent::End(PathEnd::Cached));
-        }
-        goes_on
+impl Footprint {
+    /// Of a sample of this solid angle (sr) that meets a surface after so many metres, at this cosine.
+    pub fn new(solid_angle: f32, distance: f32, cos: f32) -> Self {
+        Footprint(if cos > 0.0 { solid_angle * distance * distance / cos } else { 0.0 })
     }
 
-    /// Traces a path from a point of a cell as from a white diffuse base under the coat.
-    fn trace_from_cell(
-        &mut self,
-        CachePoint { hit, surface }: &CachePoint,
-        sampler: &Sampler,
-        limits: PathLimits,
-        sink: &mut impl RadianceSink,
-    ) {
-        let material = &self.caster.scene.materials[surface.material as usize];
-        let bsdf = Bsdf::at_exit(material, surface.normal, surface.geometric_normal);
-        self.trace_from_surface((hit, surface), &bsdf, sampler, limits, sink);
+    /// Returns true if it is so wide that cells of this size serve.
+    pub fn covers_cells(self, cell_m: f32) -> bool {
+        self.0 >= (MIN_FOOTPRINT_CELLS * cell_m).powi(2)
     }
 }
 
 impl IrradianceCache {
-    /// Traces the light of the cells for a pass of a camera's picture, on rayon's current pool. Of no use if `control`
-    /// is cancelled.
-    pub fn trace(
-        scene: &RenderScene,
-        camera: &FilmCamera,
-        photon_map: Option<&PhotonMap>,
-        pass: SamplePass,
-        seed: u32,
-        control: &RenderControl,
-    ) -> Self {
-        let points = CachePoints::find(scene, camera, pass);
-        let depth = scene.plan().max_depth;
-        let limits = PathLimits { max_non_specular_depth: depth, max_depth: depth, split_factor: 1 };
-        let paths = pass.first_sample * PATHS_PER_SAMPLE..(pass.first_sample + pass.samples) * PATHS_PER_SAMPLE;
-        let gather = |tracer: &mut PathTracer<'_>, (key, points): &(CellKey, Vec<CachePoint>)| {
-            let mut light = vec![Vec3::ZERO; scene.layers.len()];
-            let (x, y) = key.seeds();
-            for index in paths.clone().take_while(|_| !control.is_cancelled()) {
-                let sampler = Sampler::new(x, y, index, seed ^ SEED);
-                let point = &points[index as usize % points.len()];
-                tracer.trace_from_cell(point, &sampler, limits, &mut LayerSums(&mut light));
-            }
-            light.iter_mut().for_each(|sum| *sum /= paths.len() as f32);
-            // Paths that come to a cell without finite light find, discard and count what is not finite
-            light.iter().all(|sum| sum.is_finite()).then_some((*key, light))
-        };
-        let tracer = || PathTracer::new(scene, photon_map);
-        let cells = points.cells.par_iter().map_init(tracer, gather).flatten_iter().collect();
-        IrradianceCache { cell_m: points.cell_m, cells }
-    }
-
-    /// Returns the light of the cell of a surface and its factor towards the path, if the path may take it.
-    fn light_at(&self, path: &PathState, query: CacheQuery<'_>, bsdf: &Bsdf<'_>) -> Option<(Vec3, &[Vec3])> {
-        let CacheQuery { surface, wo, distance } = query;
-        let cos = wo.dot(surface.geometric_normal);
-        let least_area = (MIN_FOOTPRINT_CELLS * self.cell_m).powi(2);
-        let is_wide = cos > 0.0 && path.sample_solid_angle * distance * distance >= least_area * cos;
-        if path.non_specular_depth == 0 || !is_wide {
-            return None;
-        }
+    /// Returns the light of the cell of a surface and its factor towards the path, if there is a cell.
+    pub fn light_at(&self, surface: &SurfaceInteraction, bsdf: &Bsdf<'_>) -> Option<(Vec3, &[Vec3])> {
         let factor = bsdf.matte_factor()?;
         let light = self.cells.get(&CellKey::of(surface, self.cell_m))?;
         Some((factor, light))
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::photo::Picture;
-    use crate::raytrace::emitters::MisVertex;
-    use crate::raytrace::{Film, Settings, Shortcut, prepare, render};
-    use crate::scene::{
-        Aim, Assets, Camera, Emitter, Light, LightId, Material, Object, ObjectId, Output, Room, Scene, Shape, Transform,
-    };
-    use std::ops::ControlFlow;
-
-    /// A closed room of one reflectance with a glossy ball on its floor, lit by a panel that shines at the ceiling.
-    fn room(reflectance: f32) -> Scene {
-        let matte = Material { base_color: [reflectance; 3], roughness: 0.9, ..Material::default() };
-        let glossy = Material { base_color: [0.6, 0.3, 0.2], roughness: 0.3, ..Material::default() };
-        let ball = Object {
-            id: ObjectId(1),
-            transform: Transform::at(Vec3::new(0.3, 0.4, -0.5)),
-            material: glossy,
-            ..Object::new("Ball", Shape::Sphere { radius_m: 0.4 })
-        };
-        let panel = Light {
-            id: LightId(2),
-            position: Vec3::new(-0.8, 1.8, -0.5),
-            aim: Aim::Point(Vec3::new(-0.8, 3.0, -0.5)),
-            ..Light::new(Emitter::RectPanel { width_m: 0.5, height_m: 0.5 }, Output::Lumens(8000.0))
-        };
-        let camera = Camera {
-            position: Vec3::new(0.0, 1.4, 1.8),
-            aim: Aim::Point(Vec3::new(0.0, 1.0, -1.0)),
-            focal_length_mm: 24.0,
-            ..Camera::default()
-        };
-        let size_m = Vec3::new(4.0, 3.0, 4.0);
-        let room = Room { size_m, floor: matte.clone(), walls: matte.clone(), ceiling: matte };
-        Scene { camera, room: Some(room), objects: vec![ball], lights: vec![panel], ..Scene::default() }
-    }
-
-    fn settings(spp: u32, seed: u32) -> Settings {
-        Settings { width: 36, height: 24, spp, seed, ..Settings::default() }
-    }
-
-    fn film(prepared: &RenderScene, settings: &Settings) -> Film {
-        render(prepared, settings, &RenderControl::new(), &mut |_| ControlFlow::Continue(()))
-    }
-
-    /// Returns the scene with and without the cache.
-    fn both(scene: &Scene) -> [RenderScene; 2] {
-        let [cached, mut paths] = [0; 2].map(|_| prepare(scene, &Assets::default()).unwrap());
-        paths.set_plan(paths.plan().clone().without(Shortcut::IrradianceCache));
-        [cached, paths]
-    }
-
-    fn luminances(picture: &Picture) -> Vec<f64> {
-        picture.rgb.iter().map(|rgb| f64::from(luminance(Vec3::from(*rgb)))).collect()
-    }
-
-    fn mean(values: &[f64]) -> f64 {
-        values.iter().sum::<f64>() / values.len() as f64
-    }
-
-    #[test]
-    fn a_bright_room_has_the_light_that_paths_find_and_a_third_of_their_noise() {
-        let scene = room(0.7);
-        let [cached, paths] = both(&scene);
-        let reference = luminances(&film(&paths, &settings(1024, 9)).develop(&scene));
-        let relative_mse = |prepared: &RenderScene, spp, seed| {
-            let values = luminances(&film(prepared, &settings(spp, seed)).develop(&scene));
-            mean(&values.iter().zip(&reference).map(|(value, right)| (value / right - 1.0).powi(2)).collect::<Vec<_>>())
-        };
-        let (ours, theirs) = (relative_mse(&cached, 16, 1), relative_mse(&paths, 16, 1));
-        assert!(ours < theirs / 3.0, "{ours} against {theirs} at 16 samples");
-        // The mean of the picture, and that of its lower half with the shadow under the ball
-        let values = luminances(&film(&cached, &settings(256, 2)).develop(&scene));
-        let half = values.len() / 2;
-        for range in [0..values.len(), half..values.len()] {
-            let ratio = mean(&values[range.clone()]) / mean(&reference[range]);
-            assert!((ratio - 1.0).abs() < 0.003, "{ratio}");
-        }
-        // No single pixel is far off: edges and contact shadows stay
-        let worst = values.iter().zip(&reference).map(|(value, right)| (value / right - 1.0).abs()).fold(0.0, f64::max);
-        assert!(worst < 0.12, "{worst}");
-    }
-
-    #[test]
-    fn a_spot_of_light_of_a_few_cells_is_reflected_in_full() {
-        let mut scene = room(0.7);
-        scene.lights[0] = Light {
-            position: Vec3::new(-1.6, 1.2, -0.6),
-            aim: Aim::Point(Vec3::new(-2.0, 1.2, -0.6)),
-            ..Light::new(Emitter::Spot { inner_deg: 60.0, outer_deg: 70.0 }, Output::Lumens(4000.0))
-        };
-        let [cached, paths] = both(&scene);
-        let mean = |prepared: &RenderScene, spp, seed| {
-            mean(&luminances(&film(prepared, &settings(spp, seed)).develop(&scene)))
-        };
-        let ratio = mean(&cached, 256, 3) / mean(&paths, 1024, 4);
-        // Both means scatter by half a per cent over seeds
-        assert!((ratio - 1.0).abs() < 0.02, "{ratio}");
-    }
-
-    #[test]
-    fn light_that_a_mirror_throws_is_in_the_cache() {
-        let mut scene = room(0.7);
-        scene.objects[0].material =
-            Material { metallic: 1.0, roughness: 0.0, base_color: [0.9; 3], ..Material::default() };
-        scene.lights[0] = Light {
-            position: Vec3::new(-1.5, 2.5, 0.5),
-            aim: Aim::Point(Vec3::new(0.3, 0.4, -0.5)),
-            ..Light::new(Emitter::Spot { inner_deg: 7.0, outer_deg: 8.0 }, Output::Lumens(4000.0))
-        };
-        let [cached, paths] = both(&scene);
-        assert!(cached.plan().photons);
-        let mean = |prepared: &RenderScene, spp, seed| {
-            mean(&luminances(&film(prepared, &settings(spp, seed)).develop(&scene)))
-        };
-        let ratio = mean(&cached, 128, 3) / mean(&paths, 512, 4);
-        assert!((ratio - 1.0).abs() < 0.02, "{ratio}");
-    }
-
-    #[test]
-    fn the_cache_has_the_same_bits_for_any_number_of_threads() {
-        let scene = room(0.7);
-        let [cached, _] = both(&scene);
-        let picture = |threads| {
-            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-            pool.install(|| film(&cached, &settings(4, 5)).develop(&scene))
-        };
-        assert_eq!(picture(1).rgb, picture(3).rgb);
-    }
-
-    #[test]
-    fn only_pictures_of_bright_rooms_have_a_cache() {
-        let is_bright = |scene: &Scene| {
-            let [cached, _] = both(scene);
-            pays(&cached, &cached.lens.film_camera(36, 24))
-        };
-        assert!(is_bright(&room(0.7)));
-        assert!(!is_bright(&room(0.3)));
-        assert!(!is_bright(&Scene { room: None, ..room(0.7) }), "light leaves");
-        let [bright, dark] = [0.7, 0.3].map(|reflectance| both(&room(reflectance)));
-        assert!(bright[0].plan().irradiance_cache && !bright[1].plan().irradiance_cache);
-        // The ball is as bright as 0.6
-        assert!(dark[0].plan().irradiance_cache);
-    }
-
-    #[test]
-    fn paths_take_no_cell_from_nearby() {
-        let scene = room(0.7);
-        let [cached, _] = both(&scene);
-        let (camera, pass) = (cached.lens.film_camera(36, 24), SamplePass { first_sample: 0, samples: 1 });
-        let points = CachePoints::find(&cached, &camera, pass);
-        let cache = IrradianceCache::trace(&cached, &camera, None, pass, 0, &RenderControl::new());
-        assert!(cache.cells.len() > 200 && (0.1..0.4).contains(&cache.cell_m), "{}", cache.cell_m);
-        let (_, found) = &points.cells[points.cells.len() / 2];
-        let surface = &found[0].surface;
-        let bsdf =
-            Bsdf::at_exit(&cached.materials[surface.material as usize], surface.normal, surface.geometric_normal);
-        let at = |distance, sample_solid_angle, non_specular_depth| {
-            let mut path = PathState::new(surface.position, Vec3::Y, MisVertex::new(surface.position, Vec3::Y));
-            (path.sample_solid_angle, path.non_specular_depth) = (sample_solid_angle, non_specular_depth);
-            let query = CacheQuery { surface, wo: surface.geometric_normal, distance };
-            cache.light_at(&path, query, &bsdf).is_some()
-        };
-        let matte = std::f32::consts::PI;
-        assert!(at(2.0, matte, 1));
-        assert!(!at(2.0, matte, 0), "what the camera sees is never from the cache");
-        assert!(!at(0.2, matte, 1), "nor what is near");
-        assert!(!at(2.0, 0.01, 1) && !at(2.0, 0.0, 1), "nor what a glossy surface or a mirror shows");
     }
 }

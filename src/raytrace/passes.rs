@@ -3,8 +3,10 @@
 
 use super::caustics::{CausticView, MIN_PHOTONS, PhotonMap, PhotonPass};
 use super::control::RenderControl;
-use super::irradiance_cache::{self, IrradianceCache};
+use super::irradiance_cache::IrradianceCache;
+use super::irradiance_gather::{self, CachePass};
 use super::lens::FilmCamera;
+use super::path_tracer::PathTracer;
 use super::render_scene::RenderScene;
 use super::settings::{Method, Settings};
 use std::sync::Arc;
@@ -75,6 +77,15 @@ pub struct SharedLight {
     pub irradiance_cache: Option<IrradianceCache>,
 }
 
+impl SharedLight {
+    /// Returns a tracer for a scene with this light.
+    pub fn tracer<'a>(&'a self, scene: &'a RenderScene) -> PathTracer<'a> {
+        let mut tracer = PathTracer::new(scene, self.photon_map.as_ref());
+        tracer.irradiance_cache = self.irradiance_cache.as_ref();
+        tracer
+    }
+}
+
 /// Traces the shared light of a render's passes; a function of scene and settings.
 #[derive(Debug)]
 pub struct SharedLightTracer<'a> {
@@ -96,7 +107,7 @@ impl<'a> SharedLightTracer<'a> {
             let photons = settings.pixels() * u64::from(settings.spp);
             Arc::new(CausticView::learn(scene, &camera, photons, settings.seed, control))
         });
-        let is_cached = may_use_cache(scene, settings) && irradiance_cache::pays(scene, &camera);
+        let is_cached = may_use_cache(scene, settings) && irradiance_gather::pays(scene, &camera);
         SharedLightTracer { scene, settings, view, camera, is_cached }
     }
 
@@ -107,7 +118,8 @@ impl<'a> SharedLightTracer<'a> {
         let photons = MIN_PHOTONS.max(self.settings.pixels() * u64::from(samples));
         let photon_pass = PhotonPass { first_sample, samples, photons, seed };
         let photon_map = self.view.as_ref().map(|view| PhotonMap::trace(scene, &photon_pass, view, control));
-        let cached = || IrradianceCache::trace(scene, &self.camera, photon_map.as_ref(), pass, seed, control);
+        let cache_pass = CachePass { first_sample, samples, seed };
+        let cached = || IrradianceCache::trace(scene, &self.camera, photon_map.as_ref(), cache_pass, control);
         let irradiance_cache = self.is_cached.then(cached);
         SharedLight { photon_map, irradiance_cache }
     }

@@ -12,11 +12,10 @@ use super::caustics::{CausticMis, GatherDensities, GatherPoint, PhotonMap};
 use super::emitters::MisVertex;
 use super::events::{Lobe, PathEnd, PathEvent, PathVertex};
 use super::geometry::SurfaceInteraction;
-use super::irradiance_cache::{CacheQuery, IrradianceCache};
+use super::irradiance_cache::IrradianceCache;
 use super::lights::LightImportances;
 use super::limits::PathLimits;
 use super::medium_stack::MediumStack;
-use super::passes::SharedLight;
 use super::ray_caster::RayCaster;
 use super::ray_filter::RayFilter;
 use super::render_scene::RenderScene;
@@ -136,12 +135,6 @@ impl<'a> PathTracer<'a> {
     pub fn new(scene: &'a RenderScene, photon_map: Option<&'a PhotonMap>) -> Self {
         let caster = RayCaster::with_photon_caustics(scene, photon_map.is_some());
         PathTracer { caster, photon_map, irradiance_cache: None }
-    }
-
-    /// A tracer for a scene and what the samples of a pass share.
-    pub fn with_shared_light(scene: &'a RenderScene, shared: &'a SharedLight) -> Self {
-        let irradiance_cache = shared.irradiance_cache.as_ref();
-        PathTracer { irradiance_cache, ..PathTracer::new(scene, shared.photon_map.as_ref()) }
     }
 
     /// Traces a path along a camera ray and adds its contributions to `sink`.
@@ -306,8 +299,7 @@ impl<'a> PathTracer<'a> {
             let mut bsdf = scene.bsdf(&surface, wo, &path.media, path.polarisation);
 
             // Take diffuse light from the cache
-            let query = CacheQuery { surface: &surface, wo, distance };
-            if !self.take_cached_light(path, query, &mut bsdf, sink) {
+            if !self.take_cached_light(path, &surface, (wo, distance), &mut bsdf, sink) {
                 return;
             }
             let point = ShadingPoint {

@@ -3,6 +3,7 @@
 use super::aggregate::Hit;
 use super::bsdf::{Bsdf, Polarisation};
 use super::geometry::SurfaceInteraction;
+use super::irradiance_cache::Footprint;
 use super::medium_stack::MediumStack;
 use super::ray_caster::RayCaster;
 use super::ray_filter::RayFilter;
@@ -23,6 +24,8 @@ pub struct PilotVertex<'a> {
     pub wo: Vec3,
     /// Length of the way from the camera, metres.
     pub travelled: f32,
+    /// The part of the surface that the last sample stands for; none after specular scattering.
+    pub footprint: Footprint,
     /// Radiance that the path carries per radiance at its end.
     pub throughput: Vec3,
     /// Non-specular vertices before it.
@@ -42,13 +45,15 @@ pub fn trace(
     let mut ray = Ray { origin, direction, t_max: f32::INFINITY };
     let (mut media, mut polarisation) = (MediumStack::default(), Polarisation::NONE);
     let (mut travelled, mut throughput, mut non_specular_depth) = (0.0, Vec3::ONE, 0);
+    let mut solid_angle = 0.0;
     for depth in 0..scene.plan().max_depth {
         let Some(hit) = caster.intersect_filtered(&ray, RayFilter::of_path(depth, non_specular_depth)) else { return };
         let surface = &scene.surface(&ray, &hit);
         let wo = -ray.direction;
         let bsdf = &scene.bsdf(surface, wo, &media, polarisation);
         travelled += hit.t;
-        found(&PilotVertex { hit: &hit, surface, bsdf, wo, travelled, throughput, non_specular_depth });
+        let footprint = Footprint::new(solid_angle, hit.t, wo.dot(surface.geometric_normal));
+        found(&PilotVertex { hit: &hit, surface, bsdf, wo, travelled, footprint, throughput, non_specular_depth });
         let set = sampler.set(Dimensions::Bsdf { depth });
         let Some(sample) = bsdf.sample(sampler::last_pair(&set)[0], sampler::first_pair(&set)) else { return };
         if !sample.specular {
@@ -62,6 +67,7 @@ pub fn trace(
         }
         polarisation = sample.polarisation;
         throughput *= sample.weight;
+        solid_angle = if sample.specular { 0.0 } else { 1.0 / sample.pdf };
         ray = Ray { origin: surface.spawn_origin(sample.direction), direction: sample.direction, t_max: f32::INFINITY };
     }
 }

@@ -6,7 +6,6 @@ use super::lens::FilmCamera;
 use super::limits::PathLimits;
 use super::noise_target::NoiseTarget;
 use super::passes::{self, PassSchedule, SamplePass, SharedLight, SharedLightTracer};
-use super::path_tracer::PathTracer;
 use super::pixel_sampler::PixelSampler;
 use super::render_scene::RenderScene;
 use super::sampler::{SampleId, Sampler};
@@ -91,7 +90,7 @@ impl TileJob<'_> {
         let view_axis = self.camera.forward();
         let limits = PathLimits::new(method, self.scene.plan(), max_depth);
         let in_moment = |scene| {
-            let tracer = PathTracer::with_shared_light(scene, self.shared_light);
+            let tracer = self.shared_light.tracer(scene);
             PixelSampler { tracer, camera: self.camera, method, limits }
         };
         let mut pixel_samplers: Vec<_> = self.scene.moments().iter().map(in_moment).collect();

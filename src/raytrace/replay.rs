@@ -6,7 +6,6 @@ use super::film::{Layer, NonFiniteGate, NonFiniteReport};
 use super::lens::FilmCamera;
 use super::limits::PathLimits;
 use super::passes::{PassSchedule, SamplePass, SharedLight, SharedLightTracer};
-use super::path_tracer::PathTracer;
 use super::pixel_sampler::PixelSampler;
 use super::render_scene::RenderScene;
 use super::sampler::{SampleId, Sampler};
@@ -99,7 +98,7 @@ impl<'a> PassReplay<'a> {
     fn trace(&self, sample: SampleId, sink: &mut impl RadianceSink) {
         let Settings { method, max_depth, .. } = *self.settings;
         let moment = self.scene.moment_of(&Sampler::of(sample));
-        let tracer = PathTracer::with_shared_light(&self.scene.moments()[moment], &self.shared_light);
+        let tracer = self.shared_light.tracer(&self.scene.moments()[moment]);
         let limits = PathLimits::new(method, self.scene.plan(), max_depth);
         PixelSampler { tracer, camera: &self.camera, method, limits }.sample(sample, sink);
     }
