@@ -12,9 +12,8 @@
 //!
 //! Where it fails: light and shadow within a cell become one, which darkens or brightens what is near. So a path takes
 //! a cell only from afar, as seen by the width of its sample ([`MIN_FOOTPRINT_CELLS`]); the mean of a room is then
-//! right within 0.001 stops. The cache is used only where it pays (`irradiance_gather.rs`, which traces the
-//! cells), and not under normal maps, in
-//! water that moves while it is lit, or by the light meter.
+//! right within 0.001 stops. The cache is used only where it pays (`irradiance_gather.rs`, which traces the cells), and
+//! not under normal maps, in water that moves while it is lit, or by the light meter.
 
 use super::bsdf::Bsdf;
 use super::geometry::SurfaceInteraction;
@@ -24,12 +23,12 @@ use std::collections::HashMap;
 /// Width of a path's sample, where it meets the surface, in cells, from which on it takes a cell.
 const MIN_FOOTPRINT_CELLS: f32 = 3.0;
 
-/// A cube of space, a range of normals and a material.
+/// The key of a cell: a cube of space, a range of normals and a material.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct CellKey([i32; 5]);
 
 impl CellKey {
-    /// The cell of a surface.
+    /// Returns the key of the cell that a surface is in, for cells of this size.
     pub fn of(surface: &SurfaceInteraction, cell_m: f32) -> Self {
         let IVec3 { x, y, z } = (surface.position / cell_m).floor().as_ivec3();
         // One of 26 directions: to the faces, edges and corners of a cube
@@ -37,7 +36,7 @@ impl CellKey {
         CellKey([x, y, z, normal.dot(IVec3::new(1, 4, 16)), surface.material.cast_signed()])
     }
 
-    /// Two numbers for the random numbers of the cell's paths.
+    /// Returns two numbers by which the random numbers of the cell's paths differ from those of others.
     pub fn seeds(&self) -> (u32, u32) {
         let [x, y, z, normal, material] = self.0.map(i32::cast_unsigned);
         (x ^ z.rotate_left(16), y ^ normal.rotate_left(12) ^ material.rotate_left(20))
@@ -53,12 +52,12 @@ pub struct IrradianceCache {
     pub cells: HashMap<CellKey, Vec<Vec3>>,
 }
 
-/// The part of a surface that a sample stands for.
+/// The area of a surface that a sample stands for, square metres.
 #[derive(Clone, Copy, Debug)]
 pub struct Footprint(f32);
 
 impl Footprint {
-    /// Of a sample of this solid angle (sr) that meets a surface after so many metres, at this cosine.
+    /// The footprint of a sample of this solid angle (sr) that meets a surface after so many metres, at this cosine.
     pub fn new(solid_angle: f32, distance: f32, cos: f32) -> Self {
         Footprint(if cos > 0.0 { solid_angle * distance * distance / cos } else { 0.0 })
     }

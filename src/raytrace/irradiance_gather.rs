@@ -22,7 +22,7 @@ use glam::Vec3;
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 
-/// Camera paths that find the surfaces, for each sample of a pixel,
+/// Pilot paths that find points on surfaces, for each sample of a pixel,
 const PILOT_PATHS: u32 = 1 << 14;
 /// for so many samples of a pass at most.
 const MOST_PILOTS: u32 = 2;
@@ -57,7 +57,7 @@ struct CachePoint {
     hit: Hit,
     surface: SurfaceInteraction,
     footprint: Footprint,
-    /// Number of the pilot path.
+    /// Number of the pilot path that met it.
     path: u32,
 }
 

@@ -43,8 +43,8 @@ pub struct Arguments {
     /// edges by a pixel or two, less the longer it renders; paths blur nothing and are noisy.
     #[arg(long, value_enum, default_value_t = Caustics::Photons)]
     caustics: Caustics,
-    /// Method for light on matte surfaces that bounced before, in bright closed rooms. A cache is several times as fast
-    /// and within 0.001 stops of the room; paths have no such error.
+    /// Method for light on matte surfaces that paths meet after a bounce, in bright closed rooms. A cache is several times
+    /// as fast and right within 0.001 stops on average; paths have no such error.
     #[arg(long, value_enum, default_value_t = BouncedLight::Cache)]
     bounced_light: BouncedLight,
     /// Minutes between checkpoints, which are written beside the picture (OUT.checkpoint) after a pass; 0 for none.
