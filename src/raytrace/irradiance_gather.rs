@@ -15,6 +15,7 @@ use super::path_tracer::PathTracer;
 use super::pilot_path::{self, PilotVertex};
 use super::ray_caster::RayCaster;
 use super::render_scene::RenderScene;
+use super::sample_pass::SamplePass;
 use super::sampler::Sampler;
 use super::sink::RadianceSink;
 use crate::color::luminance;
@@ -61,17 +62,6 @@ struct CachePoint {
     path: u32,
 }
 
-/// Samples of a pass.
-#[derive(Clone, Copy, Debug)]
-pub struct CachePass {
-    /// Samples per pixel before the pass.
-    pub first_sample: u32,
-    /// Samples per pixel in the pass.
-    pub samples: u32,
-    /// Seed of the render.
-    pub seed: u32,
-}
-
 /// Returns true if the cache pays for a camera's picture: where much of the light that bounced once bounces again.
 pub fn pays(scene: &RenderScene, camera: &FilmCamera) -> bool {
     let arriving = trace_pilots(scene, camera, PILOT_PATHS, 0, |_, vertex| {
@@ -112,7 +102,7 @@ fn trace_pilots<T: Send>(
 
 impl CachePoints {
     /// Finds points for a pass. They are others in each pass, so that no spot of light is missed in all of them.
-    fn find(scene: &RenderScene, camera: &FilmCamera, pass: CachePass) -> Self {
+    fn find(scene: &RenderScene, camera: &FilmCamera, pass: SamplePass) -> Self {
         let paths = PILOT_PATHS * pass.samples.clamp(1, MOST_PILOTS);
         let points = trace_pilots(scene, camera, paths, 1 + pass.first_sample, |path, vertex| {
             let is_outside = vertex.wo.dot(vertex.surface.geometric_normal) > 0.0;
@@ -179,7 +169,8 @@ impl IrradianceCache {
         scene: &RenderScene,
         camera: &FilmCamera,
         photon_map: Option<&PhotonMap>,
-        pass: CachePass,
+        pass: SamplePass,
+        seed: u32,
         control: &RenderControl,
     ) -> Self {
         let points = CachePoints::find(scene, camera, pass);
@@ -191,7 +182,7 @@ impl IrradianceCache {
             let mut light = vec![Vec3::ZERO; scene.layers.len()];
             let (x, y) = key.seeds();
             for index in paths.clone().take_while(|_| !control.is_cancelled()) {
-                let sampler = Sampler::new(x, y, index, pass.seed ^ SEED);
+                let sampler = Sampler::new(x, y, index, seed ^ SEED);
                 let point = &points[index as usize % points.len()];
                 tracer.trace_from_cell(point, &sampler, limits, &mut LayerSums(&mut light));
             }
@@ -267,6 +258,10 @@ mod tests {
         values.iter().sum::<f64>() / values.len() as f64
     }
 
+    fn picture_mean(prepared: &RenderScene, scene: &Scene, settings: Settings) -> f64 {
+        mean(&luminances(&film(prepared, &settings).develop(scene)))
+    }
+
     #[test]
     fn a_bright_room_has_the_light_that_paths_find_and_a_third_of_their_noise() {
         let scene = room(0.7);
@@ -299,10 +294,7 @@ mod tests {
             ..Light::new(Emitter::Spot { inner_deg: 60.0, outer_deg: 70.0 }, Output::Lumens(4000.0))
         };
         let [cached, paths] = both(&scene);
-        let mean = |prepared: &RenderScene, spp, seed| {
-            mean(&luminances(&film(prepared, &settings(spp, seed)).develop(&scene)))
-        };
-        let ratio = mean(&cached, 256, 3) / mean(&paths, 1024, 4);
+        let ratio = picture_mean(&cached, &scene, settings(256, 3)) / picture_mean(&paths, &scene, settings(1024, 4));
         // Both means scatter by half a per cent over seeds
         assert!((ratio - 1.0).abs() < 0.02, "{ratio}");
     }
@@ -319,10 +311,7 @@ mod tests {
         };
         let [cached, paths] = both(&scene);
         assert!(cached.plan().photons);
-        let mean = |prepared: &RenderScene, spp, seed| {
-            mean(&luminances(&film(prepared, &settings(spp, seed)).develop(&scene)))
-        };
-        let ratio = mean(&cached, 128, 3) / mean(&paths, 512, 4);
+        let ratio = picture_mean(&cached, &scene, settings(128, 3)) / picture_mean(&paths, &scene, settings(512, 4));
         // The photons that meet a small ball scatter the means by a per cent
         assert!((ratio - 1.0).abs() < 0.04, "{ratio}");
     }
@@ -357,9 +346,9 @@ mod tests {
     fn paths_take_no_cell_from_nearby() {
         let scene = room(0.7);
         let [cached, _] = both(&scene);
-        let (camera, pass) = (cached.lens.film_camera(36, 24), CachePass { first_sample: 0, samples: 1, seed: 0 });
+        let (camera, pass) = (cached.lens.film_camera(36, 24), SamplePass { first_sample: 0, samples: 1 });
         let points = CachePoints::find(&cached, &camera, pass);
-        let cache = IrradianceCache::trace(&cached, &camera, None, pass, &RenderControl::new());
+        let cache = IrradianceCache::trace(&cached, &camera, None, pass, 0, &RenderControl::new());
         let mut tracer = PathTracer::new(&cached, None);
         tracer.irradiance_cache = Some(&cache);
         assert!(cache.cells.len() > 200 && (0.1..0.4).contains(&cache.cell_m), "{}", cache.cell_m);

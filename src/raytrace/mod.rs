@@ -59,6 +59,7 @@ mod render_scene;
 mod replay;
 mod retrace;
 mod roulette;
+mod sample_pass;
 mod sampler;
 mod settings;
 mod shadow_ray;

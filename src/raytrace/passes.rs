@@ -4,31 +4,16 @@
 use super::caustics::{CausticView, MIN_PHOTONS, PhotonMap, PhotonPass};
 use super::control::RenderControl;
 use super::irradiance_cache::IrradianceCache;
-use super::irradiance_gather::{self, CachePass};
+use super::irradiance_gather;
 use super::lens::FilmCamera;
 use super::path_tracer::PathTracer;
 use super::render_scene::RenderScene;
+use super::sample_pass::SamplePass;
 use super::settings::{Method, Settings};
 use std::sync::Arc;
 
 /// Maximum samples per pixel of a pass.
 const MAX_PASS: u32 = 16;
-
-/// Consecutive samples of every pixel.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct SamplePass {
-    /// Samples per pixel before the pass.
-    pub first_sample: u32,
-    /// Samples per pixel in the pass.
-    pub samples: u32,
-}
-
-impl SamplePass {
-    /// Returns true if the pass has a sample.
-    pub fn contains(&self, index: u32) -> bool {
-        index >= self.first_sample && index - self.first_sample < self.samples
-    }
-}
 
 /// The passes of a render; a function of scene and settings.
 #[derive(Clone, Copy, Debug)]
@@ -118,8 +103,7 @@ impl<'a> SharedLightTracer<'a> {
         let photons = MIN_PHOTONS.max(self.settings.pixels() * u64::from(samples));
         let photon_pass = PhotonPass { first_sample, samples, photons, seed };
         let photon_map = self.view.as_ref().map(|view| PhotonMap::trace(scene, &photon_pass, view, control));
-        let cache_pass = CachePass { first_sample, samples, seed };
-        let cached = || IrradianceCache::trace(scene, &self.camera, photon_map.as_ref(), cache_pass, control);
+        let cached = || IrradianceCache::trace(scene, &self.camera, photon_map.as_ref(), pass, seed, control);
         let irradiance_cache = self.is_cached.then(cached);
         SharedLight { photon_map, irradiance_cache }
     }

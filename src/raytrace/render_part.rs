@@ -5,9 +5,10 @@
 
 use super::control::RenderControl;
 use super::film_part::FilmPart;
-use super::passes::{PassSchedule, SamplePass, SharedLightTracer};
+use super::passes::{PassSchedule, SharedLightTracer};
 use super::render::{TileJob, empty_film};
 use super::render_scene::RenderScene;
+use super::sample_pass::SamplePass;
 use super::settings::Settings;
 use crate::scene::Scene;
 use rayon::prelude::*;
