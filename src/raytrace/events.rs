@@ -60,9 +60,14 @@ pub enum PathEvent {
         /// Gather radius, metres.
         radius: f32,
     },
+    /// Smoother gloss at the vertex is blurred to a roughness.
+    BlurredGloss {
+        /// The user's roughness, 0 to 1.
+        roughness: f32,
+    },
     /// The diffuse light of the vertex comes from the irradiance cache.
     CachedLight {
-        /// Size of its cells, metres.
+        /// Size of the cell, metres.
         cell_m: f32,
     },
     /// A direction is sampled from the BSDF.

@@ -1,4 +1,5 @@
-//! The irradiance cache: light on matte surfaces that paths meet after a bounce, kept for cells of a few decimetres.
+//! The irradiance cache: light on matte surfaces that paths meet after a bounce, kept for cells of a few centimetres to
+//! decimetres.
 //!
 //! In a bright closed room most noise comes from long paths, each of which finds little. A pass of samples therefore
 //! begins with paths from points on the surfaces (Ward, Rubinstein and Clear 1988, "A Ray Tracing Solution for Diffuse
@@ -10,9 +11,9 @@
 //! What a cell holds is the radiance of a white diffuse base under the coat of its material, for each film layer. The
 //! path's own texture and the coat towards it are factors; the coat's reflection is traced as everywhere else.
 //!
-//! Where it fails: light and shadow within a cell become one, which darkens or brightens what is near. So a path takes
-//! a cell only from afar, as seen by the width of its sample ([`MIN_FOOTPRINT_CELLS`]); the mean of a room is then
-//! right within 0.001 stops. The cache is used only where it pays (`irradiance_gather.rs`, which traces the cells), and
+//! Where it fails: light and shadow within a cell become one, which darkens or brightens what is near. So cells have
+//! several sizes, each half of the next, and a path takes one of a third of the width of its sample at most
+//! ([`MIN_FOOTPRINT_CELLS`]), or none; the mean of a room is then right within 0.001 stops. The cache is used only where it pays (`irradiance_gather.rs`, which traces the cells), and
 //! not under normal maps, in water that moves while it is lit, or by the light meter.
 
 use super::bsdf::Bsdf;
@@ -20,36 +21,61 @@ use super::geometry::SurfaceInteraction;
 use glam::{IVec3, Vec3};
 use std::collections::HashMap;
 
-/// Width of a path's sample, where it meets the surface, in cells, from which on it takes a cell.
+/// Least width of a path's sample, where it meets the surface, in cells.
 const MIN_FOOTPRINT_CELLS: f32 = 3.0;
+/// Times that cells are halved for narrower samples.
+const MAX_LEVEL: i32 = 5;
 
-/// The key of a cell: a cube of space, a range of normals and a material.
+/// The key of a cell: a cube of space of one of the sizes, a range of normals and a material.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub struct CellKey([i32; 5]);
+pub struct CellKey([i32; 6]);
 
 impl CellKey {
-    /// Returns the key of the cell that a surface is in, for cells of this size.
-    pub fn of(surface: &SurfaceInteraction, cell_m: f32) -> Self {
+    /// Returns the key of the cell of a level that a surface is in, for largest cells of this size.
+    pub fn of(surface: &SurfaceInteraction, largest_cell_m: f32, CellLevel(level): CellLevel) -> Self {
+        let cell_m = CellLevel(level).cell_m(largest_cell_m);
         let IVec3 { x, y, z } = (surface.position / cell_m).floor().as_ivec3();
         // One of 26 directions: to the faces, edges and corners of a cube
         let normal = (1.5 * surface.normal).round().as_ivec3();
-        CellKey([x, y, z, normal.dot(IVec3::new(1, 4, 16)), surface.material.cast_signed()])
+        CellKey([x, y, z, normal.dot(IVec3::new(1, 4, 16)), surface.material.cast_signed(), level])
     }
 
     /// Returns two numbers by which the random numbers of the cell's paths differ from those of others.
     pub fn seeds(&self) -> (u32, u32) {
-        let [x, y, z, normal, material] = self.0.map(i32::cast_unsigned);
-        (x ^ z.rotate_left(16), y ^ normal.rotate_left(12) ^ material.rotate_left(20))
+        let [x, y, z, normal, material, level] = self.0.map(i32::cast_unsigned);
+        (x ^ z.rotate_left(16), y ^ normal.rotate_left(12) ^ material.rotate_left(20) ^ level.rotate_left(27))
     }
 }
 
 /// The light of each cell in a pass.
 #[derive(Debug)]
 pub struct IrradianceCache {
-    /// Size of a cell, metres.
-    pub cell_m: f32,
+    /// Size of the largest cells, metres.
+    pub largest_cell_m: f32,
     /// Radiance of a white diffuse base, film layer by film layer.
     pub cells: HashMap<CellKey, Vec<Vec3>>,
+}
+
+/// The light of a cell towards a path.
+#[derive(Clone, Copy, Debug)]
+pub struct CachedLight<'a> {
+    /// Factor of the light.
+    pub factor: Vec3,
+    /// Radiance of a white diffuse base, film layer by film layer.
+    pub light: &'a [Vec3],
+    /// Size of the cell, metres.
+    pub cell_m: f32,
+}
+
+/// A size of cells: how often the largest are halved.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct CellLevel(i32);
+
+impl CellLevel {
+    /// Returns the size of the level's cells, metres, of the largest cells'.
+    pub fn cell_m(self, largest_cell_m: f32) -> f32 {
+        largest_cell_m * (-self.0 as f32).exp2()
+    }
 }
 
 /// The area of a surface that a sample stands for, square metres.
@@ -62,17 +88,24 @@ impl Footprint {
         Footprint(if cos > 0.0 { solid_angle * distance * distance / cos } else { 0.0 })
     }
 
-    /// Returns true if it is so wide that cells of this size serve.
-    pub fn covers_cells(self, cell_m: f32) -> bool {
-        self.0 >= (MIN_FOOTPRINT_CELLS * cell_m).powi(2)
+    /// Returns the level of the largest cells that are narrow enough, if there are such.
+    pub fn level(self, largest_cell_m: f32) -> Option<CellLevel> {
+        let halvings = (MIN_FOOTPRINT_CELLS * largest_cell_m / self.0.sqrt()).log2().ceil().max(0.0);
+        (halvings <= MAX_LEVEL as f32).then_some(CellLevel(halvings as i32))
     }
 }
 
 impl IrradianceCache {
-    /// Returns the light of the cell of a surface and its factor towards the path, if there is a cell.
-    pub fn light_at(&self, surface: &SurfaceInteraction, bsdf: &Bsdf<'_>) -> Option<(Vec3, &[Vec3])> {
+    /// Returns the light of the cell of a surface, for a sample of this footprint, if there is a cell.
+    pub fn light_at(
+        &self,
+        surface: &SurfaceInteraction,
+        footprint: Footprint,
+        bsdf: &Bsdf<'_>,
+    ) -> Option<CachedLight<'_>> {
+        let level = footprint.level(self.largest_cell_m)?;
         let factor = bsdf.matte_factor()?;
-        let light = self.cells.get(&CellKey::of(surface, self.cell_m))?;
-        Some((factor, light))
+        let light = self.cells.get(&CellKey::of(surface, self.largest_cell_m, level))?;
+        Some(CachedLight { factor, light, cell_m: level.cell_m(self.largest_cell_m) })
     }
 }

@@ -14,10 +14,10 @@
 //! text in the command line's `explain_pixel`.
 
 mod aggregate;
+mod approximated_vertex;
 mod blas;
 mod bsdf;
 mod bvh;
-mod cached_vertex;
 mod caustics;
 mod connection;
 mod control;
@@ -53,6 +53,7 @@ mod prepare;
 mod primary_objects;
 mod ray_caster;
 mod ray_filter;
+mod regularisation;
 mod render;
 mod render_part;
 mod render_scene;

@@ -1,5 +1,5 @@
 //! Sample passes: progressive rendering in passes of 1, 1, 2, 4 ... samples per pixel, each with its own photons and its
-//! own cache of bounced light.
+//! own cache of bounced light and its own blur.
 
 use super::caustics::{CausticView, MIN_PHOTONS, PhotonMap, PhotonPass};
 use super::control::RenderControl;
@@ -7,6 +7,7 @@ use super::irradiance_cache::IrradianceCache;
 use super::irradiance_gather;
 use super::lens::FilmCamera;
 use super::path_tracer::PathTracer;
+use super::regularisation::BlurredMaterials;
 use super::render_scene::RenderScene;
 use super::sample_pass::SamplePass;
 use super::settings::{Method, Settings};
@@ -47,19 +48,20 @@ pub fn uses_photons(scene: &RenderScene, settings: &Settings) -> bool {
     scene.plan().photons && settings.method != Method::Whitted
 }
 
-/// Returns true if a render has an irradiance cache where it pays: paths of the plan's own depth, at one time.
-fn may_use_cache(scene: &RenderScene, settings: &Settings) -> bool {
-    let is_whole = settings.method == Method::Path && settings.max_depth.is_none() && scene.moments.is_empty();
-    scene.plan().irradiance_cache && is_whole
+/// Returns true if a render may approximate bounced light: paths of the plan's own depth, at one time.
+fn may_approximate(scene: &RenderScene, settings: &Settings) -> bool {
+    settings.method == Method::Path && settings.max_depth.is_none() && scene.moments.is_empty()
 }
 
-/// The light that the samples of a pass share: photons of caustics, and the cache of bounced light.
+/// What the samples of a pass share: photons of caustics, the cache of bounced light, and materials with blurred gloss.
 #[derive(Debug, Default)]
 pub struct SharedLight {
     /// The photons; none for a render without them.
     pub photon_map: Option<PhotonMap>,
     /// The cache; none where it does not pay.
     pub irradiance_cache: Option<IrradianceCache>,
+    /// The materials; none without regularisation.
+    pub blurred_materials: Option<BlurredMaterials>,
 }
 
 impl SharedLight {
@@ -67,6 +69,7 @@ impl SharedLight {
     pub fn tracer<'a>(&'a self, scene: &'a RenderScene) -> PathTracer<'a> {
         let mut tracer = PathTracer::new(scene, self.photon_map.as_ref());
         tracer.irradiance_cache = self.irradiance_cache.as_ref();
+        tracer.blurred_materials = self.blurred_materials.as_ref();
         tracer
     }
 }
@@ -81,6 +84,8 @@ pub struct SharedLightTracer<'a> {
     camera: FilmCamera,
     /// There is a cache of bounced light.
     is_cached: bool,
+    /// Paths are regularised.
+    is_regularised: bool,
 }
 
 impl<'a> SharedLightTracer<'a> {
@@ -92,8 +97,11 @@ impl<'a> SharedLightTracer<'a> {
             let photons = settings.pixels() * u64::from(settings.spp);
             Arc::new(CausticView::learn(scene, &camera, photons, settings.seed, control))
         });
-        let is_cached = may_use_cache(scene, settings) && irradiance_gather::pays(scene, &camera);
-        SharedLightTracer { scene, settings, view, camera, is_cached }
+        let may_approximate = may_approximate(scene, settings);
+        let may_be_cached = may_approximate && scene.plan().irradiance_cache;
+        let is_cached = may_be_cached && irradiance_gather::pays(scene, &camera);
+        let is_regularised = may_approximate && scene.plan().regularisation;
+        SharedLightTracer { scene, settings, view, camera, is_cached, is_regularised }
     }
 
     /// Traces the shared light of a pass. Incomplete if `control` is cancelled.
@@ -105,7 +113,8 @@ impl<'a> SharedLightTracer<'a> {
         let photon_map = self.view.as_ref().map(|view| PhotonMap::trace(scene, &photon_pass, view, control));
         let cached = || IrradianceCache::trace(scene, &self.camera, photon_map.as_ref(), pass, seed, control);
         let irradiance_cache = self.is_cached.then(cached);
-        SharedLight { photon_map, irradiance_cache }
+        let blurred_materials = self.is_regularised.then(|| BlurredMaterials::new(scene, pass));
+        SharedLight { photon_map, irradiance_cache, blurred_materials }
     }
 }
 

@@ -18,6 +18,7 @@ use super::limits::PathLimits;
 use super::medium_stack::MediumStack;
 use super::ray_caster::RayCaster;
 use super::ray_filter::RayFilter;
+use super::regularisation::BlurredMaterials;
 use super::render_scene::RenderScene;
 use super::roulette::{survival_probability, survives};
 use super::sampler::{self, Dimensions, Sampler};
@@ -37,6 +38,8 @@ pub struct PathTracer<'a> {
     photon_map: Option<&'a PhotonMap>,
     /// Light on matte surfaces after a bounce; without a cache, paths find all of it.
     pub irradiance_cache: Option<&'a IrradianceCache>,
+    /// Materials for paths that regularisation blurs; none without it.
+    pub blurred_materials: Option<&'a BlurredMaterials>,
 }
 
 /// The state of a path between two vertices.
@@ -134,7 +137,7 @@ impl<'a> PathTracer<'a> {
     /// A tracer for a scene, with caustics from a photon map or without.
     pub fn new(scene: &'a RenderScene, photon_map: Option<&'a PhotonMap>) -> Self {
         let caster = RayCaster::with_photon_caustics(scene, photon_map.is_some());
-        PathTracer { caster, photon_map, irradiance_cache: None }
+        PathTracer { caster, photon_map, irradiance_cache: None, blurred_materials: None }
     }
 
     /// Traces a path along a camera ray and adds its contributions to `sink`.
@@ -296,7 +299,9 @@ impl<'a> PathTracer<'a> {
                 sink.record(|| PathEvent::End(PathEnd::Depth));
                 return;
             }
-            let mut bsdf = scene.bsdf(&surface, wo, &path.media, path.polarisation);
+            // Describe the scattering there; its gloss may be blurred
+            let material = self.blurred_material(path, &surface, sink).unwrap_or(material);
+            let mut bsdf = scene.bsdf_of(material, &surface, wo, &path.media, path.polarisation);
 
             // Take diffuse light from the cache
             if !self.take_cached_light(path, &surface, (wo, distance), &mut bsdf, sink) {

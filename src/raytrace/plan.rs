@@ -19,6 +19,8 @@ const SPLIT_FACTOR: u32 = 4;
 const NO_SPLIT: u32 = 1;
 /// Largest reflectance from which on an irradiance cache may pay.
 const MIN_CACHED_ALBEDO: f32 = 0.5;
+/// Roughness to which regularisation blurs smoother gloss in the first passes.
+pub const BLURRED_ROUGHNESS: f32 = 0.5;
 /// Maximum depth in the whitest room: what the largest reflectance (0.999) needs. Russian roulette ends most paths long
 /// before; a lower limit would darken white rooms (at 64, one of 0.95 by 4 %).
 const MAX_DEPTH: u32 = 6300;
@@ -50,6 +52,8 @@ pub struct RenderPlan {
     pub photons: bool,
     /// Where paths stay bright, light on matte surfaces after a bounce comes from an irradiance cache.
     pub irradiance_cache: bool,
+    /// Paths are regularised: gloss that they meet after a wide bounce is blurred.
+    pub regularisation: bool,
     /// Number of paths from the first non-specular vertex.
     pub split_factor: u32,
     /// Maximum number of scattering events of a path.
@@ -79,11 +83,13 @@ pub enum Shortcut {
     Photons,
     /// Light on matte surfaces after a bounce comes from an irradiance cache.
     IrradianceCache,
+    /// Gloss that paths meet after a wide bounce is blurred.
+    Regularisation,
 }
 
 impl Shortcut {
     /// All shortcuts.
-    pub const ALL: [Shortcut; 9] = [
+    pub const ALL: [Shortcut; 10] = [
         Shortcut::NoEmitterHits,
         Shortcut::NoRefraction,
         Shortcut::NoSubsurface,
@@ -93,6 +99,7 @@ impl Shortcut {
         Shortcut::PathSplitting,
         Shortcut::Photons,
         Shortcut::IrradianceCache,
+        Shortcut::Regularisation,
     ];
 
     /// Name on the chart.
@@ -107,6 +114,7 @@ impl Shortcut {
             Shortcut::PathSplitting => "path splitting at the first surface",
             Shortcut::Photons => "caustics from photons",
             Shortcut::IrradianceCache => "bounced light from a cache",
+            Shortcut::Regularisation => "blurred gloss after a bounce",
         }
     }
 }
@@ -124,8 +132,14 @@ impl RenderPlan {
             Shortcut::PathSplitting => self.split_factor = 1,
             Shortcut::Photons => self.photons = false,
             Shortcut::IrradianceCache => self.irradiance_cache = false,
+            Shortcut::Regularisation => self.regularisation = false,
         }
         self
+    }
+
+    /// The plan without what blurs light: photons, cache and regularisation. For references.
+    pub fn without_blur(self) -> Self {
+        self.without(Shortcut::Photons).without(Shortcut::IrradianceCache).without(Shortcut::Regularisation)
     }
 
     /// Derives the plan from a scene's materials, lights, lens and number of strands.
@@ -216,6 +230,12 @@ impl RenderPlan {
             }
             paths => format!("indirect light is noisier than direct: {paths} paths from the first surface"),
         });
+        // What hair and skin reflect after a bounce is less than their noise
+        let is_glossy = materials.iter().any(|material| material.has_gloss_below(BLURRED_ROUGHNESS));
+        let regularisation = is_glossy && split_factor > 1;
+        if regularisation {
+            reasons.push("gloss: blurred where light meets it after a bounce, less with every sample".to_owned());
+        }
         RenderPlan {
             has_area_emitters,
             refraction,
@@ -227,6 +247,7 @@ impl RenderPlan {
             sample_all_lights,
             photons,
             irradiance_cache,
+            regularisation,
             split_factor,
             max_depth,
             reasons,

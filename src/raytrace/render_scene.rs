@@ -109,7 +109,18 @@ impl RenderScene {
         media: &MediumStack,
         polarisation: Polarisation,
     ) -> Bsdf<'_> {
-        let material = &self.materials[surface.material as usize];
+        self.bsdf_of(self.material_of(surface), surface, wo, media, polarisation)
+    }
+
+    /// As [`RenderScene::bsdf`], with another material of the same kind in the place of the surface's own.
+    pub(super) fn bsdf_of<'a>(
+        &'a self,
+        material: &'a TracedMaterial,
+        surface: &SurfaceInteraction,
+        wo: Vec3,
+        media: &MediumStack,
+        polarisation: Polarisation,
+    ) -> Bsdf<'a> {
         if let (Some(strand), Some(fibre)) = (&surface.strand, material.fibre()) {
             return Bsdf::of_fibre(fibre, strand.tangent, strand.h, wo);
         }

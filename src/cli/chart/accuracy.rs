@@ -86,9 +86,8 @@ fn measure(input: &AccuracyInput<'_>, folder: &Path, loaded: &Loaded) -> Result<
     let mut scene = raytrace::prepare(&loaded.scene, &loaded.assets)?;
     let reference_spp = input.reference_spp.unwrap_or(32 * input.spp);
     let converged = Settings { spp: reference_spp, seed: REFERENCE_SEED, ..settings(size, Method::Path) };
-    // The reference has no photons and no cache, which blur.
     let plan = scene.plan().clone();
-    scene.set_plan(plan.clone().without(Shortcut::Photons).without(Shortcut::IrradianceCache));
+    scene.set_plan(plan.clone().without_blur());
     let reference = reference::load_or_render(folder, loaded, &scene, &converged);
     scene.set_plan(plan);
     let mut studio = StudioStudy { name: &loaded.scene.name, loaded, scene, size, reference };

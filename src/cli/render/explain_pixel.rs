@@ -130,6 +130,7 @@ impl Names<'_> {
                     triple(*throughput)
                 )
             }
+            PathEvent::BlurredGloss { roughness } => format!("  gloss blurred to a roughness of {roughness}"),
             PathEvent::CachedLight { cell_m } => {
                 format!("  diffuse light from a cell of {cell_m} m of the irradiance cache")
             }

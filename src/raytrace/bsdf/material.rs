@@ -1,6 +1,7 @@
 //! A material prepared for tracing: its parameters and the directional albedo tables of its lobes.
 
 use super::albedo::AlbedoTables;
+use super::blurred_gloss::BlurredGloss;
 use super::fibre::TracedFibre;
 use super::ggx;
 use super::layers::SurfaceLayers;
@@ -50,6 +51,8 @@ pub struct TracedMaterial {
     fibre: Option<TracedFibre>,
     /// What the surface has besides its base.
     layers: Option<Arc<SurfaceLayers>>,
+    /// A rougher gloss in place of a smoother one.
+    pub(super) blurred_gloss: Option<Arc<BlurredGloss>>,
 }
 
 /// Roughness and metal that a texture varies.
@@ -93,6 +96,7 @@ impl TracedMaterial {
             coverage: if clear > 0.0 { Alpha::Opaque } else { material.alpha },
             fibre: material.fibre.as_ref().map(TracedFibre::new),
             layers,
+            blurred_gloss: None,
         }
     }
 
@@ -105,6 +109,20 @@ impl TracedMaterial {
         self.has_microfacets = true;
         self.layers = self.layers.as_ref().map(|layers| Arc::new(layers.over_mapped_base(&tables)));
         self.mapped_gloss = Some(MappedGloss { roughness, metallic, transmission, tables });
+    }
+
+    /// Returns true if the material is a coat over a matte base, somewhere smoother than this roughness, and nothing
+    /// else: no metal, glass, fibre or layer.
+    pub fn has_gloss_below(&self, roughness: f32) -> bool {
+        let is_smoother = self.mapped_gloss.is_some() || self.alpha < roughness * roughness;
+        let is_metal = self.mapped_gloss.as_ref().map_or(self.metallic, |mapped| mapped.metallic) > 0.0;
+        let is_plain = self.fibre.is_none() && self.layers.is_none() && !self.transmits();
+        is_plain && !is_metal && self.has_microfacets && is_smoother
+    }
+
+    /// Returns the material with a gloss that is blurred where it is smoother.
+    pub fn with_blurred_gloss(&self, gloss: &Arc<BlurredGloss>) -> Self {
+        TracedMaterial { blurred_gloss: Some(gloss.clone()), ..self.clone() }
     }
 
     /// Returns the tables of a material with mapped roughness.

@@ -1,6 +1,7 @@
 //! The parameters of a material at a point: its constants times what its textures give there.
 
 use super::albedo::AlbedoTables;
+use super::blurred_gloss::BlurredGloss;
 use super::ggx;
 use super::material::TracedMaterial;
 use crate::color::luminance;
@@ -39,8 +40,10 @@ pub struct MaterialPoint<'a> {
     pub base_color: Vec3,
     /// Metallic part of the opaque lobes.
     pub metallic: f32,
-    /// GGX roughness: the square of the user's roughness.
+    /// GGX roughness: the square of the user's roughness, or that of a blurred gloss.
     pub alpha: f32,
+    /// The blurred gloss where it is rougher than the material, which the albedos below know nothing of.
+    pub blurred_gloss: Option<&'a BlurredGloss>,
     /// Weight of the dielectric lobe.
     pub transmission: f32,
     /// Directional albedos at the roughness below.
@@ -54,18 +57,19 @@ impl<'a> MaterialPoint<'a> {
     pub fn new(material: &'a TracedMaterial, factors: TextureFactors) -> Self {
         let base_color = material.base_color * factors.color;
         let Some(mapped) = &material.mapped_gloss else {
-            let TracedMaterial { metallic, alpha, transmission, .. } = *material;
+            let TracedMaterial { metallic, transmission, .. } = *material;
+            let (alpha, blurred_gloss) = blurred(material, material.alpha);
             let (lower, upper) = (&material.tables, None);
-            return MaterialPoint { material, base_color, metallic, alpha, transmission, lower, upper };
+            return MaterialPoint { material, base_color, metallic, alpha, blurred_gloss, transmission, lower, upper };
         };
         let roughness = (mapped.roughness * factors.roughness).clamp(0.0, 1.0);
         let (transmission, metallic) =
             TracedMaterial::divide(mapped.transmission, (mapped.metallic * factors.metallic).clamp(0.0, 1.0));
         let (lower, upper, fraction) = mapped.tables.around(roughness);
         // Never a delta lobe: whether light sampling applies must not change from point to point
-        let alpha = (roughness * roughness).max(ggx::MIN_ALPHA);
+        let (alpha, blurred_gloss) = blurred(material, (roughness * roughness).max(ggx::MIN_ALPHA));
         let upper = Some((upper, fraction));
-        MaterialPoint { material, base_color, metallic, alpha, transmission, lower, upper }
+        MaterialPoint { material, base_color, metallic, alpha, blurred_gloss, transmission, lower, upper }
     }
 
     /// Returns true if the point has a metal or a coat.
@@ -125,5 +129,13 @@ impl<'a> MaterialPoint<'a> {
             Some((upper, fraction)) => lower + (value(upper) - lower) * fraction,
             None => lower,
         }
+    }
+}
+
+/// Returns the GGX roughness of a material's gloss where its own is `alpha`, and the blurred gloss if it is rougher.
+fn blurred(material: &TracedMaterial, alpha: f32) -> (f32, Option<&BlurredGloss>) {
+    match &material.blurred_gloss {
+        Some(gloss) if gloss.alpha > alpha => (gloss.alpha, Some(gloss)),
+        _ => (alpha, None),
     }
 }

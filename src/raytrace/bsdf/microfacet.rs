@@ -10,16 +10,21 @@ use glam::{Vec2, Vec3};
 pub struct MicrofacetLobe {
     /// Smith's Lambda of the outgoing direction.
     lambda_o: f32,
+    /// Factor of the reflectance.
+    factor: f32,
 }
 
 impl MicrofacetLobe {
     /// A lobe that reflects nothing: all of it is masked.
-    pub const NONE: Self = MicrofacetLobe { lambda_o: f32::INFINITY };
+    pub const NONE: Self = MicrofacetLobe { lambda_o: f32::INFINITY, factor: 0.0 };
 
     /// Returns the lobe of a material for an outgoing direction, local frame.
     #[inline(always)]
     pub fn new(material: &MaterialPoint<'_>, wo: Vec3) -> Self {
-        MicrofacetLobe { lambda_o: if material.has_microfacets() { ggx::lambda(wo, material.alpha) } else { 0.0 } }
+        let lambda_o = if material.has_microfacets() { ggx::lambda(wo, material.alpha) } else { 0.0 };
+        let gloss = material.blurred_gloss;
+        let factor = gloss.map_or(1.0, |gloss| gloss.factor(material.coat_albedo(wo.z), wo.z));
+        MicrofacetLobe { lambda_o, factor }
     }
 
     /// Returns BSDF times cosine, and the pdf times the lobe's `probability`. Both are 0 for a delta lobe.
@@ -32,8 +37,8 @@ impl MicrofacetLobe {
         let cos_half = wo.dot(m).clamp(0.0, 1.0);
         // D / (4 cos_o): times G1(o) it is the density of visible normals, times F G2 the BSDF times cosine
         let shape = ggx::distribution(m, material.alpha) / (4.0 * wo.z);
-        let value =
-            reflectance(material, wo, cos_half) * (shape / (1.0 + self.lambda_o + ggx::lambda(wi, material.alpha)));
+        let shadowed = shape / (1.0 + self.lambda_o + ggx::lambda(wi, material.alpha));
+        let value = reflectance(material, wo, cos_half) * (shadowed * self.factor);
         (value, probability * shape / (1.0 + self.lambda_o))
     }
 

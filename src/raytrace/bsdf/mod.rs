@@ -24,6 +24,7 @@
 //! - a case in `tests.rs` (chi-square of the density, white furnace).
 
 mod albedo;
+mod blurred_gloss;
 mod dielectric;
 mod diffuse;
 mod direction_table;
@@ -48,6 +49,7 @@ mod subsurface;
 mod surface;
 mod transmission_tint;
 
+pub use blurred_gloss::BlurredGloss;
 pub use dielectric::{Boundary, DielectricInterface, pane_transmittance};
 pub use fibre::{FibreBsdf, TracedFibre};
 use glam::{Vec2, Vec3};

@@ -8,9 +8,13 @@ use std::f32::consts::TAU;
 
 /// Returns the albedo in a white furnace: the mean weight of many stratified samples.
 fn furnace(material: &Material, cos: f32) -> Vec3 {
-    let material = TracedMaterial::new(material);
+    albedo(&TracedMaterial::new(material), cos)
+}
+
+/// As [`furnace`].
+fn albedo(material: &TracedMaterial, cos: f32) -> Vec3 {
     let wo = Vec3::new((1.0 - cos * cos).sqrt(), 0.0, cos);
-    let bsdf = Bsdf::new(&material, Vec3::ONE, Vec3::Z, Vec3::Z, wo);
+    let bsdf = Bsdf::new(material, Vec3::ONE, Vec3::Z, Vec3::Z, wo);
     let n = 128;
     let mut sum = Vec3::ZERO;
     for i in 0..n * n {
@@ -36,6 +40,35 @@ fn white_materials_have_albedo_one_in_a_white_furnace() {
             }
         }
     }
+}
+
+#[test]
+fn blurred_gloss_reflects_as_much_as_the_gloss_it_replaces() {
+    let gloss = std::sync::Arc::new(BlurredGloss::new(1.5, 0.5));
+    for base_color in [0.0, 1.0] {
+        for roughness in [0.0, 0.1, 0.3, 0.45] {
+            let material = Material { base_color: [base_color; 3], roughness, ..Material::default() };
+            let sharp = TracedMaterial::new(&material);
+            assert!(sharp.has_gloss_below(0.5));
+            let blurred = sharp.with_blurred_gloss(&gloss);
+            for cos in [1.0, 0.7, 0.3, 0.1] {
+                let (ours, truth) = (albedo(&blurred, cos), albedo(&sharp, cos));
+                assert!((ours - truth).abs().max_element() < 0.003, "{material:?} under {cos}: {ours}, not {truth}");
+            }
+        }
+    }
+    // Rougher gloss and textures of rougher places stay as they are
+    let rough = Material { roughness: 0.9, ..Material::default() };
+    assert!(!TracedMaterial::new(&rough).has_gloss_below(0.5));
+    let textured = mapped(&Material { roughness: 1.0, ..Material::default() });
+    let blurred = textured.with_blurred_gloss(&gloss);
+    let wo = Vec3::new(0.6, 0.0, 0.8);
+    let eval = |material, roughness| {
+        let factors = TextureFactors { roughness, ..TextureFactors::ONE };
+        Bsdf::new(material, factors, Vec3::Z, Vec3::Z, wo).eval(Vec3::new(-0.6, 0.0, 0.8)).0.x
+    };
+    assert_eq!(eval(&blurred, 0.8), eval(&textured, 0.8));
+    assert!(eval(&blurred, 0.2) < 0.5 * eval(&textured, 0.2), "the mirror direction is darker");
 }
 
 /// Returns a material whose roughness and metal a texture varies.

@@ -1,14 +1,26 @@
-//! A path's vertex whose diffuse light comes from the irradiance cache.
+//! The approximations at a path's vertex: its diffuse light from the irradiance cache, and blurred gloss.
 
-use super::bsdf::Bsdf;
+use super::bsdf::{Bsdf, TracedMaterial};
 use super::events::{PathEnd, PathEvent};
 use super::geometry::SurfaceInteraction;
-use super::irradiance_cache::Footprint;
+use super::irradiance_cache::{CachedLight, Footprint};
 use super::path_tracer::{PathState, PathTracer};
 use super::sink::RadianceSink;
 use glam::Vec3;
 
 impl<'a> PathTracer<'a> {
+    /// Returns the material of a surface with blurred gloss, if regularisation blurs it for the path.
+    pub fn blurred_material(
+        &self,
+        path: &PathState,
+        surface: &SurfaceInteraction,
+        sink: &mut impl RadianceSink,
+    ) -> Option<&'a TracedMaterial> {
+        let (material, roughness) = self.blurred_materials?.material(surface.material, path.sample_solid_angle)?;
+        sink.record(|| PathEvent::BlurredGloss { roughness });
+        Some(material)
+    }
+
     /// Adds the cached diffuse light of a surface that a path meets from `wo` after so many metres, and leaves the rest of
     /// its BSDF. Without a cache, or where the path has to find that light itself, nothing changes. Returns false if the
     /// path ends.
@@ -20,8 +32,9 @@ impl<'a> PathTracer<'a> {
         bsdf: &mut Bsdf<'_>,
         sink: &mut impl RadianceSink,
     ) -> bool {
-        let Some((factor, light)) = self.cached_light(path, surface, wo, distance, bsdf) else { return true };
-        sink.record(|| PathEvent::CachedLight { cell_m: self.irradiance_cache.map_or(0.0, |cache| cache.cell_m) });
+        let cached = self.cached_light(path, surface, wo, distance, bsdf);
+        let Some(CachedLight { factor, light, cell_m }) = cached else { return true };
+        sink.record(|| PathEvent::CachedLight { cell_m });
         let factor = path.throughput * factor;
         for (layer, light) in light.iter().enumerate().filter(|(_, light)| **light != Vec3::ZERO) {
             sink.add(layer, factor * *light);
@@ -33,7 +46,7 @@ impl<'a> PathTracer<'a> {
         goes_on
     }
 
-    /// Returns the cached light of a surface and its factor towards the path, if the path may take it.
+    /// Returns the cached light of a surface, if the path may take it.
     pub fn cached_light(
         &self,
         path: &PathState,
@@ -41,10 +54,10 @@ impl<'a> PathTracer<'a> {
         wo: Vec3,
         distance: f32,
         bsdf: &Bsdf<'_>,
-    ) -> Option<(Vec3, &'a [Vec3])> {
+    ) -> Option<CachedLight<'a>> {
         let cache = self.irradiance_cache.filter(|_| path.non_specular_depth > 0)?;
         let cos = wo.dot(surface.geometric_normal);
         let footprint = Footprint::new(path.sample_solid_angle, distance, cos);
-        if footprint.covers_cells(cache.cell_m) { cache.light_at(surface, bsdf) } else { None }
+        cache.light_at(surface, footprint, bsdf)
     }
 }
