@@ -221,7 +221,10 @@ impl RenderPlan {
         reasons.push(format!("largest reflectance {albedo:.2}: less than 1/512 is left after {max_depth} bounces"));
         let irradiance_cache = albedo >= MIN_CACHED_ALBEDO;
         if irradiance_cache {
-            reasons.push("bright surfaces: in a closed room, light that bounced before comes from a cache".to_owned());
+            reasons.push(
+                "bright surfaces: where much light is left after a bounce, that of later ones comes from a cache"
+                    .to_owned(),
+            );
         }
         let split_factor = if strands > 0 || subsurface { NO_SPLIT } else { SPLIT_FACTOR };
         reasons.push(match split_factor {
