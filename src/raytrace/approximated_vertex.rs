@@ -21,9 +21,9 @@ impl<'a> PathTracer<'a> {
         Some(material)
     }
 
-    /// Adds the cached diffuse light of a surface that a path meets from `wo` after so many metres, and leaves the rest of
-    /// its BSDF. Without a cache, or where the path has to find that light itself, nothing changes. Returns false if the
-    /// path ends.
+    /// Adds the cached diffuse light of a surface that a path meets from `wo` after so many metres, and leaves the rest
+    /// of its BSDF. Without a cache, or where the path has to find that light itself, nothing changes. Returns false if
+    /// the path ends.
     pub fn take_cached_light(
         &self,
         path: &PathState,

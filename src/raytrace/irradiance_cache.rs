@@ -13,8 +13,9 @@
 //!
 //! Where it fails: light and shadow within a cell become one, which darkens or brightens what is near. So cells have
 //! several sizes, each half of the next, and a path takes one of a third of the width of its sample at most
-//! ([`MIN_FOOTPRINT_CELLS`]), or none; the mean of a room is then right within 0.001 stops. The cache is used only where it pays (`irradiance_gather.rs`, which traces the cells), and
-//! not under normal maps, in water that moves while it is lit, or by the light meter.
+//! ([`MIN_FOOTPRINT_CELLS`]), or none; the mean of a room is then right within 0.001 stops. The cache is used only where
+//! it pays (`irradiance_gather.rs`, which traces the cells), and not under normal maps, in water that moves while it is
+//! lit, or by the light meter.
 
 use super::bsdf::Bsdf;
 use super::geometry::SurfaceInteraction;

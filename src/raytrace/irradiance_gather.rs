@@ -1,7 +1,7 @@
 //! The paths that fill the irradiance cache (`irradiance_cache.rs`), and the decision whether a picture has one.
 //!
-//! Pilot paths find points where camera paths take cells; from these points paths gather the cells' light. The points are
-//! distributed as the paths that take the cells, so that a cell's mean is the mean that those would find.
+//! Pilot paths find points where camera paths take cells; from these points paths gather the cells' light. The points
+//! are distributed as the paths that take the cells, so that a cell's mean is the mean that those would find.
 
 use super::aggregate::Hit;
 use super::bsdf::Bsdf;

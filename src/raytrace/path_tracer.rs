@@ -301,7 +301,7 @@ impl<'a> PathTracer<'a> {
             }
             // Describe the scattering there; its gloss may be blurred
             let material = self.blurred_material(path, &surface, sink).unwrap_or(material);
-            let mut bsdf = scene.bsdf_of(material, &surface, wo, &path.media, path.polarisation);
+            let mut bsdf = scene.bsdf(material, &surface, wo, &path.media, path.polarisation);
 
             // Take diffuse light from the cache
             if !self.take_cached_light(path, &surface, (wo, distance), &mut bsdf, sink) {

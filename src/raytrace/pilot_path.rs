@@ -50,7 +50,7 @@ pub fn trace(
         let Some(hit) = caster.intersect_filtered(&ray, RayFilter::of_path(depth, non_specular_depth)) else { return };
         let surface = &scene.surface(&ray, &hit);
         let wo = -ray.direction;
-        let bsdf = &scene.bsdf(surface, wo, &media, polarisation);
+        let bsdf = &scene.bsdf(scene.material_of(surface), surface, wo, &media, polarisation);
         travelled += hit.t;
         let footprint = Footprint::new(solid_angle, hit.t, wo.dot(surface.geometric_normal));
         found(&PilotVertex { hit: &hit, surface, bsdf, wo, travelled, footprint, throughput, non_specular_depth });

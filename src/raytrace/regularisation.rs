@@ -2,10 +2,11 @@
 //! Space Regularization for Holistic and Robust Light Transport"; pbrt-v4's `regularize`).
 //!
 //! The gloss of a ball reflects its lamps onto the floor. Of the paths that leave a point of the floor few meet the ball
-//! where it does, and bring much light: in studios with plastic, lacquer and paint that is three quarters of the noise.
+//! where it does, and bring much light: among things of plastic that is three quarters of the noise.
 //! A rougher gloss is met at more points and brings less at each. The blurred gloss reflects as much as the material's
 //! own towards every direction, the base is as it was, and what the camera sees directly, in mirrors or in other gloss
-//! is sharp: what changes is where such reflections fall, not how much there is of them.
+//! is sharp: what changes is where such reflections fall, not how much there is of them. Metal, glass, fibres and
+//! layered materials stay as they are.
 //!
 //! The blur decreases from pass to pass, so that a picture converges to that without: the roughness as the cube root of
 //! the number of samples, for the square of the error, which is as the roughness to the power of 2.8 among things of

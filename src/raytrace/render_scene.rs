@@ -101,19 +101,9 @@ impl RenderScene {
         self.light_ids.get(light as usize).copied()
     }
 
-    /// The BSDF at a surface towards `wo` (unit), for a path inside `media` that accepts this polarisation.
-    pub(super) fn bsdf(
-        &self,
-        surface: &SurfaceInteraction,
-        wo: Vec3,
-        media: &MediumStack,
-        polarisation: Polarisation,
-    ) -> Bsdf<'_> {
-        self.bsdf_of(self.material_of(surface), surface, wo, media, polarisation)
-    }
-
-    /// As [`RenderScene::bsdf`], with another material of the same kind in the place of the surface's own.
-    pub(super) fn bsdf_of<'a>(
+    /// Returns the BSDF at a surface towards `wo` (unit), for a path inside `media` that accepts this polarisation.
+    /// `material` is that of the surface, or the same with blurred gloss.
+    pub(super) fn bsdf<'a>(
         &'a self,
         material: &'a TracedMaterial,
         surface: &SurfaceInteraction,

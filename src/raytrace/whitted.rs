@@ -90,7 +90,7 @@ fn trace_ray(
 
     // Add direct and ambient light on fibres, from all sides
     if surface.strand.is_some() && material.fibre().is_some() {
-        let bsdf = scene.bsdf(&surface, -ray.direction, &media, Polarisation::NONE);
+        let bsdf = scene.bsdf(scene.material_of(&surface), &surface, -ray.direction, &media, Polarisation::NONE);
         add_direct_light(caster, &surface, &media, throughput, sink, |light_dir| bsdf.eval(light_dir).0);
         add_ambient_light(caster, throughput * scene.albedo(&surface), sink);
         return;

@@ -2,7 +2,7 @@
 
 use super::albedo::{AlbedoTable, AlbedoTables};
 
-/// A coat of a roughness and an index of refraction.
+/// The rougher coat, with its directional albedo.
 #[derive(Debug)]
 pub struct BlurredGloss {
     /// GGX roughness.

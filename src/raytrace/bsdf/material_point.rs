@@ -42,7 +42,7 @@ pub struct MaterialPoint<'a> {
     pub metallic: f32,
     /// GGX roughness: the square of the user's roughness, or that of a blurred gloss.
     pub alpha: f32,
-    /// The blurred gloss where it is rougher than the material, which the albedos below know nothing of.
+    /// The blurred gloss, if it is rougher than the material's own, of which the albedos below are.
     pub blurred_gloss: Option<&'a BlurredGloss>,
     /// Weight of the dielectric lobe.
     pub transmission: f32,

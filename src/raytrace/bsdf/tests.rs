@@ -11,7 +11,7 @@ fn furnace(material: &Material, cos: f32) -> Vec3 {
     albedo(&TracedMaterial::new(material), cos)
 }
 
-/// As [`furnace`].
+/// Returns the albedo of a prepared material in a white furnace.
 fn albedo(material: &TracedMaterial, cos: f32) -> Vec3 {
     let wo = Vec3::new((1.0 - cos * cos).sqrt(), 0.0, cos);
     let bsdf = Bsdf::new(material, Vec3::ONE, Vec3::Z, Vec3::Z, wo);

@@ -151,7 +151,7 @@ impl<'a> PhotonTracer<'a> {
             let material = &scene.materials[surface.material as usize];
             let set = sampler.set(Dimensions::Bsdf { depth });
             let [lobe, roulette] = sampler::last_pair(&set);
-            let bsdf = scene.bsdf(&surface, wo, &media, polarisation);
+            let bsdf = scene.bsdf(scene.material_of(&surface), &surface, wo, &media, polarisation);
             let Some(sample) = bsdf.sample(lobe, sampler::first_pair(&set)) else { return };
             let is_unscattered = sample.is_undeviated && specular_depth == 0;
             // Light sampling finds what is transmitted by a pane alone.
