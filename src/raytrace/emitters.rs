@@ -29,8 +29,8 @@ pub struct MisVertex {
     pub direction: Vec3,
     /// Density of the direction times the number of paths per light sample, 1/sr; none at the camera.
     pub pdf: Option<f32>,
-    /// One light is sampled at the vertex rather than all of them.
-    pub samples_one_light: bool,
+    /// The vertex chooses one of many lights by importance, rather than among samples of all.
+    pub samples_by_importance: bool,
     /// The specular surfaces since then.
     pub path: StraightPath,
     /// Distance from the last vertex through thin panes to the origin of the present ray, metres.
@@ -48,7 +48,7 @@ impl MisVertex {
             ray_origin: position,
             direction: Vec3::ZERO,
             pdf: None,
-            samples_one_light: false,
+            samples_by_importance: false,
             path: StraightPath::default(),
             travelled: 0.0,
             photons: None,
@@ -202,7 +202,7 @@ impl RenderScene {
                 } else {
                     light.pdf(vertex.ray_origin, ray.direction, vertex.travelled + hit.distance)
                 };
-                let pmf = if vertex.samples_one_light { pmf(vertex.position, vertex.normal) } else { 1.0 };
+                let pmf = if vertex.samples_by_importance { pmf(vertex.position, vertex.normal) } else { 1.0 };
                 power_heuristic(pdf, pmf * light_pdf)
             }
             (Some(_), Some(photons)) => {

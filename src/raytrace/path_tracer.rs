@@ -462,7 +462,7 @@ impl<'a> PathTracer<'a> {
                 ray_origin: origin,
                 direction: sample.direction,
                 pdf: Some(sample.pdf * paths_per_light_sample),
-                samples_one_light: !self.samples_all_lights(path),
+                samples_by_importance: self.samples_by_importance(),
                 ..MisVertex::new(surface.position, bsdf.normal())
             };
             path.gather = self.photon_map.filter(|_| surface.strand.is_none()).map(|map| {

@@ -211,7 +211,9 @@ impl RenderPlan {
         reasons.push(match sampled {
             0 => "no light to sample".to_owned(),
             1 => "one light: no light selection".to_owned(),
-            n if sample_all_lights => format!("{n} lights: each is sampled at the first hit, one at later ones"),
+            n if sample_all_lights => {
+                format!("{n} lights: each is sampled; at later hits than the first, one shadow ray serves all")
+            }
             n => format!("{n} lights: one is sampled at each hit, by importance"),
         });
 

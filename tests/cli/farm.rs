@@ -1,5 +1,7 @@
 //! Pictures that are rendered in parts, by several processes, and merged.
 
+#[cfg(unix)]
+use super::is_installed;
 use super::running_render::RunningRender;
 use super::{catchlight, exr_channel, stderr, stdout};
 use serde_json::Value;
@@ -237,22 +239,10 @@ fn the_slurm_script_renders_the_missing_parts_when_it_is_run_again() {
     });
 }
 
-/// Returns true if `openjd` is there (`pip install openjd-cli`); the gate demands it.
-#[cfg(unix)]
-#[expect(clippy::print_stderr, reason = "a skipped test says so")]
-fn has_openjd() -> bool {
-    let has = Command::new("openjd").arg("--version").output().is_ok();
-    assert!(has || std::env::var_os("CATCHLIGHT_REQUIRE_OPENJD").is_none(), "no openjd");
-    if !has {
-        eprintln!("\n!!! SKIPPED, no openjd\n");
-    }
-    has
-}
-
 #[cfg(unix)]
 #[test]
 fn the_job_for_open_job_description_completes_the_picture_after_a_killed_part() {
-    if !has_openjd() {
+    if !is_installed("openjd") {
         return;
     }
     let folder = tempfile::tempdir().unwrap();
@@ -280,7 +270,7 @@ fn the_job_for_open_job_description_completes_the_picture_after_a_killed_part() 
 #[cfg(unix)]
 #[test]
 fn the_series_for_open_job_description_renders_studios_and_variants_and_completes_after_a_killed_part() {
-    if !has_openjd() {
+    if !is_installed("openjd") {
         return;
     }
     let folder = tempfile::tempdir().unwrap();

@@ -11,6 +11,8 @@ mod gear;
 mod import;
 mod output;
 mod package;
+#[cfg(unix)]
+mod peers;
 mod picture_files;
 mod running_render;
 mod sheet;
@@ -32,6 +34,18 @@ fn catchlight(folder: &Path, arguments: &[&str]) -> Output {
         .args(arguments)
         .output()
         .unwrap()
+}
+
+/// Returns true if a program is there that a test runs beside ours; the gate demands all.
+#[cfg(unix)]
+#[expect(clippy::print_stderr, reason = "a skipped test says so")]
+fn is_installed(program: &str) -> bool {
+    let is_installed = Command::new(program).arg("--version").output().is_ok();
+    assert!(is_installed || std::env::var_os("CATCHLIGHT_REQUIRE_TOOLS").is_none(), "no {program}");
+    if !is_installed {
+        eprintln!("\n!!! SKIPPED, no {program}\n");
+    }
+    is_installed
 }
 
 fn stderr(output: &Output) -> String {
