@@ -16,6 +16,8 @@ pub struct PathLimits {
 
 /// Mirrors and glass faces that Whitted's method follows: enough to look through a bottle and back.
 const WHITTED_DEPTH: u32 = 10;
+/// Largest split factor of the direct method, whose paths from the first surface find emitters alone.
+const DIRECT_SPLIT_FACTOR: u32 = 4;
 /// Least specular depth of the direct method.
 const DIRECT_DEPTH: u32 = 16;
 
@@ -30,7 +32,7 @@ impl PathLimits {
                 max_non_specular_depth: 1,
                 max_depth: max_depth.unwrap_or(plan.max_depth.max(DIRECT_DEPTH)),
                 // Without emitters to hit nothing is found beyond the first surface.
-                split_factor: if plan.has_area_emitters { plan.split_factor } else { 1 },
+                split_factor: if plan.has_area_emitters { plan.split_factor.min(DIRECT_SPLIT_FACTOR) } else { 1 },
             },
             Method::Path => {
                 let depth = max_depth.unwrap_or(plan.max_depth);

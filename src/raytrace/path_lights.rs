@@ -169,13 +169,13 @@ impl LitVertex<'_> {
         pdf.map_or(1.0, |pdf| power_heuristic(pdf * pmf, bsdf_pdf * self.paths))
     }
 
-    /// Returns the luminance that a candidate brings if nothing is in between. Control variates are left out: their
-    /// vertices sample all lights.
+    /// Returns the time-integrated luminance that a candidate brings if nothing is in between. Control variates are left
+    /// out: their vertices sample all lights.
     fn unshadowed(&self, scene: &RenderScene, candidate: &LightCandidate) -> f32 {
         let LightCandidate { light, pmf, sample, bsdf: (value, bsdf_pdf) } = *candidate;
-        let tint = scene.lights[light as usize].tint_towards(sample.direction);
-        let scattered = luminance(self.path.throughput * value * tint);
-        scattered * self.mis_weight(sample.pdf, pmf, bsdf_pdf) * sample.value / pmf
+        let light = &scene.lights[light as usize];
+        let scattered = luminance(self.path.throughput * value * light.tint_towards(sample.direction));
+        scattered * self.mis_weight(sample.pdf, pmf, bsdf_pdf) * sample.value * light.time_s / pmf
     }
 }
 

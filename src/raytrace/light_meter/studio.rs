@@ -61,8 +61,9 @@ impl MeteredStudio {
 fn one_layer_per_light(_scene: &Scene, lights: &mut [(TracedLight, &Light)]) -> Vec<Layer> {
     for (layer, (traced, _)) in lights.iter_mut().enumerate() {
         traced.layer = layer;
-        // Raise the importance of weak lights for light sampling: each has a reading with its own relative error.
-        traced.time_s = (traced.time_s / traced.output).sqrt();
+        // Make all lights equally important for light sampling: each has a reading with its own relative error, which
+        // is proportional to its power, to the last digit.
+        traced.time_s = 1.0 / traced.output;
         // A path from the receptor must not see emitters, which are found by light sampling.
         traced.hide_from_camera();
     }
