@@ -6,6 +6,9 @@
     cargo build --release --no-default-features
     peers-env/bin/python peers/compare.py target/release/catchlight
 
+Mitsuba needs LLVM, whose library DRJIT_LIBLLVM_PATH names if it does not find it (Debian: `apt-get install libllvm19`;
+with LLVM 14 its rough plastic crashes). bpy wants the Python that its wheel names: 3.11.
+
 `--studio NAME` takes only that one, `--budgets` compares denoised pictures after about 1 and 6 seconds with Cycles, in
 place of the seconds that each renderer takes to a relative mean squared error of 1e-3 without a denoiser. Each renderer
 is compared with its own reference, for materials differ in detail.
