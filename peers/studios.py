@@ -77,10 +77,12 @@ GLASS = Surface("glass")
 
 
 def matte(*color):
+    """Returns a surface that scatters evenly."""
     return Surface("matte", color)
 
 
 def plastic(roughness, *color):
+    """Returns a coat of a roughness, whose square is the alpha of GGX, over a matte base."""
     return Surface("plastic", color, roughness)
 
 
@@ -198,9 +200,11 @@ def all_studios(segments=100):
 
 
 def cross(a, b):
+    """Returns the cross product."""
     return (a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])
 
 
 def normalized(v):
+    """Returns the vector at unit length."""
     length = math.sqrt(sum(x * x for x in v))
     return tuple(x / length for x in v)
