@@ -1,11 +1,16 @@
 //! Sine, cosine and arc tangent by polynomials that the compiler can inline. Unlike the standard library's, they need no
 //! range reduction for large angles, and no branches.
 
-use std::f32::consts::{FRAC_PI_2, PI};
+use super::approx::ROUNDER;
+use std::f32::consts::{FRAC_2_PI, FRAC_PI_2, PI};
+
+/// A quarter turn in two parts (Cody and Waite 1980): products of the first with small whole numbers are exact.
+const QUARTER_HIGH: f32 = 1.570_312_5;
+const QUARTER_LOW: f32 = 4.838_268e-4;
 
 /// Returns sine and cosine of an angle in -pi/4..pi/4, within 1.2e-7 (the minimax polynomials of Moshier's Cephes
 /// library).
-#[inline]
+#[inline(always)]
 pub fn sin_cos_eighth(angle_rad: f32) -> (f32, f32) {
     let x2 = angle_rad * angle_rad;
     let sin = ((-1.951_529_6e-4 * x2 + 8.332_161e-3) * x2 - 1.666_665_5e-1) * x2 * angle_rad + angle_rad;
@@ -14,13 +19,24 @@ pub fn sin_cos_eighth(angle_rad: f32) -> (f32, f32) {
 }
 
 /// Returns sine and cosine of 2 pi u for `u` in 0..1, within 1.2e-7.
-#[inline]
+#[inline(always)]
 pub fn sin_cos_turn(u: f32) -> (f32, f32) {
-    let quarter = (4.0 * u + 0.5) as u32;
+    let quarter = (4.0 * u + 0.5) as i32;
     // The difference is exact: both are small multiples of the same power of two.
     let (sin, cos) = sin_cos_eighth((4.0 * u - quarter as f32) * FRAC_PI_2);
     let (sin, cos) = if quarter & 1 == 0 { (sin, cos) } else { (cos, -sin) };
     if quarter & 2 == 0 { (sin, cos) } else { (-sin, -cos) }
+}
+
+/// Returns sine and cosine of an angle in -4 pi..4 pi, within 2e-7.
+#[inline(always)]
+pub fn sin_cos(angle_rad: f32) -> (f32, f32) {
+    // The number of quarter turns is in the last bits
+    let rounded = angle_rad * FRAC_2_PI + ROUNDER;
+    let quarters = rounded - ROUNDER;
+    let (sin, cos) = sin_cos_eighth((angle_rad - quarters * QUARTER_HIGH) - quarters * QUARTER_LOW);
+    let (sin, cos) = if rounded.to_bits() & 1 == 0 { (sin, cos) } else { (cos, -sin) };
+    if rounded.to_bits() & 2 == 0 { (sin, cos) } else { (-sin, -cos) }
 }
 
 /// Returns the angle of a point from the X axis, -pi to pi, within 3e-7 (Hastings's polynomial, Abramowitz and Stegun
@@ -65,6 +81,13 @@ mod tests {
             let (exact_sin, exact_cos) = (f64::from(u) * TAU).sin_cos();
             let error = (f64::from(sin) - exact_sin).abs().max((f64::from(cos) - exact_cos).abs());
             assert!(error < 1.2e-7, "{u}: {error}");
+        }
+        for i in -2_000_000..=2_000_000 {
+            let angle = i as f32 / 2e6 * 2.0 * TAU as f32;
+            let (sin, cos) = sin_cos(angle);
+            let (exact_sin, exact_cos) = f64::from(angle).sin_cos();
+            let error = (f64::from(sin) - exact_sin).abs().max((f64::from(cos) - exact_cos).abs());
+            assert!(error < 2e-7, "{angle}: {error}");
         }
     }
 }

@@ -34,7 +34,7 @@ fn log2(x: f32) -> f32 {
 }
 
 /// 1.5 x 2^23: adding it rounds to an integer, which is then in the last bits.
-const ROUNDER: f32 = 12_582_912.0;
+pub(super) const ROUNDER: f32 = 12_582_912.0;
 
 /// Returns 2^x for x under 1, with a relative error of 3e-7; 2^-125 for all x below -125.
 #[inline(always)]

@@ -1,10 +1,11 @@
 //! Mathematics beyond glam: safe square roots and angles, frames, quadrature, quantiles, bounded least squares, sampling
-//! warps with their densities, rays with error bounds, SIMD dispatch, and approximations for it.
+//! warps with their densities, rays with error bounds, SIMD dispatch, vectors in lanes, and approximations for them.
 
 mod angle;
 pub mod approx;
 mod bounded_least_squares;
 mod frame;
+mod lanes;
 mod mean;
 mod normal_map;
 mod quadrature;
@@ -14,9 +15,10 @@ mod safe;
 pub mod simd;
 pub mod warp;
 
-pub use angle::{atan2, sin_cos_eighth, sin_cos_turn};
+pub use angle::{atan2, sin_cos, sin_cos_eighth, sin_cos_turn};
 pub use bounded_least_squares::{BoundedUnknown, LinearEquation, bounded_least_squares};
 pub use frame::{look_along, look_at, orthonormal_basis};
+pub use lanes::Vec3Lanes;
 pub use mean::mean;
 pub use normal_map::{bend_above, decode_normal, position_derivatives, tilted_normal};
 pub use quadrature::gauss_legendre;

@@ -3,6 +3,7 @@
 use glam::Vec3;
 
 /// Returns the square root; 0 for negative arguments and NaN.
+#[inline(always)]
 pub fn safe_sqrt(x: f32) -> f32 {
     x.max(0.0).sqrt()
 }

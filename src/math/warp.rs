@@ -6,6 +6,7 @@ use std::f32::consts::{FRAC_PI_4, PI, TAU};
 
 /// Samples a point uniformly in the unit disc. The map is area preserving and continuous (Shirley and Chiu 1997, "A Low
 /// Distortion Map Between Disk and Square"). Density 1 / pi.
+#[inline(always)]
 pub fn concentric_disc(u: Vec2) -> Vec2 {
     let offset = 2.0 * u - Vec2::ONE;
     let is_x_major = offset.x.abs() > offset.y.abs();
@@ -17,12 +18,14 @@ pub fn concentric_disc(u: Vec2) -> Vec2 {
 }
 
 /// Samples a cosine-weighted direction about +Z (Malley's method). Density cos / pi, 1/sr.
+#[inline(always)]
 pub fn cosine_hemisphere(u: Vec2) -> Vec3 {
     let disc = concentric_disc(u);
     Vec3::new(disc.x, disc.y, (1.0 - disc.length_squared()).max(0.0).sqrt())
 }
 
 /// Returns the density of [`cosine_hemisphere`], 1/sr.
+#[inline(always)]
 pub fn cosine_hemisphere_pdf(cos_theta: f32) -> f32 {
     cos_theta.max(0.0) / PI
 }

@@ -7,15 +7,17 @@
 //! Of many lights, one is chosen by its importance, and sampled. Among 60 of about the same importance, a choice of four
 //! such samples has the same variance and takes half as long again.
 
+use super::bsdf::BsdfLanes;
 use super::connection::Connection;
 use super::emitters::power_heuristic;
 use super::events::PathEvent;
-use super::lights::{LightImportances, LightSample};
+use super::lights::{LightImportances, LightLanes, LightSample, LightSampleLanes, TracedLight};
 use super::path_tracer::{PathState, PathTracer, ShadingPoint};
 use super::render_scene::RenderScene;
 use super::sampler::{self, Dimensions, Sampler};
 use super::sink::RadianceSink;
 use crate::color::luminance;
+use crate::math::simd::LANES;
 use glam::{Vec2, Vec3};
 
 /// A vertex at which lights are sampled.
@@ -63,18 +65,18 @@ impl<'a> PathTracer<'a> {
     ) {
         let scene = self.caster.scene;
         let vertex = LitVertex { path, point, paths };
-        if self.samples_all_lights(path) {
-            for (slot, _) in (0..).zip(&scene.lights).filter(|(_, light)| light.is_sampled()) {
-                let depth = path.depth;
-                let set = if slot == 0 { *first_set } else { sampler.set(Dimensions::Light { slot, depth }) };
-                if let Some(candidate) = vertex.candidate(scene, slot, 1.0, sampler::first_pair(&set)) {
-                    self.add_light(&vertex, &candidate, 1.0, sink);
-                }
+        if !self.samples_all_lights(path) {
+            if let Some((candidate, probability)) = self.choose_light(&vertex, first_set) {
+                self.add_light(&vertex, &candidate, probability, sink);
             }
-            return;
-        }
-        if let Some((candidate, probability)) = self.choose_light(&vertex, first_set) {
-            self.add_light(&vertex, &candidate, probability, sink);
+        } else if let Some(lanes) = &scene.light_lanes {
+            let u = light_numbers(lanes, path.depth, sampler, first_set);
+            let candidates = vertex.candidates(scene, lanes, &u);
+            for candidate in candidates.iter(&vertex) {
+                self.add_light(&vertex, &candidate, 1.0, sink);
+            }
+        } else if let Some(candidate) = vertex.only_candidate(scene, sampler::first_pair(first_set)) {
+            self.add_light(&vertex, &candidate, 1.0, sink);
         }
     }
 
@@ -92,13 +94,11 @@ impl<'a> PathTracer<'a> {
         let scene = self.caster.scene;
         let (on_light, [u, _]) = (sampler::first_pair(set), sampler::last_pair(set));
         if !self.samples_by_importance() {
-            let mut reservoir = Reservoir::new(u);
-            for (light, _) in (0..).zip(&scene.lights).filter(|(_, light)| light.is_sampled()) {
-                if let Some(candidate) = vertex.candidate(scene, light, 1.0, on_light) {
-                    reservoir.add(candidate, vertex.unshadowed(scene, &candidate));
-                }
-            }
-            return reservoir.chosen();
+            let Some(lanes) = &scene.light_lanes else {
+                return Some((vertex.only_candidate(scene, on_light)?, 1.0));
+            };
+            let candidates = vertex.candidates(scene, lanes, &[[on_light.x; LANES], [on_light.y; LANES]]);
+            return choose_in_proportion(candidates.iter(vertex), |candidate| vertex.unshadowed(scene, candidate), u);
         }
         let found = if vertex.point.importances.is_none() { self.light_importances(vertex.point) } else { None };
         let importances = vertex.point.importances.or(found.as_ref())?;
@@ -155,7 +155,85 @@ impl<'a> PathTracer<'a> {
     }
 }
 
+/// Returns the random numbers with which each lane's light is sampled.
+fn light_numbers(lanes: &LightLanes, depth: u32, sampler: &Sampler, first_set: &sampler::Set) -> [[f32; LANES]; 2] {
+    let mut numbers = [[0.0; LANES]; 2];
+    let mut set_lane = |lane: usize, set: &sampler::Set| {
+        let u = sampler::first_pair(set);
+        (numbers[0][lane], numbers[1][lane]) = (u.x, u.y);
+    };
+    set_lane(0, first_set);
+    let dimensions = |lane: usize| Dimensions::Light { slot: lane as u32, depth };
+    for lane in (1..lanes.lights().len()).step_by(2) {
+        let sets = sampler.pair(dimensions(lane), dimensions(lane + 1));
+        (lane..).zip(&sets).take_while(|(lane, _)| *lane < LANES).for_each(|(lane, set)| set_lane(lane, set));
+    }
+    numbers
+}
+
+/// Chooses one of a few candidates in proportion to their weights, by `u` in [0, 1). Returns it with its probability.
+/// One whose weight is not finite is chosen, so that the film reports it.
+fn choose_in_proportion<T: Copy>(
+    candidates: impl Iterator<Item = T>,
+    weight: impl Fn(&T) -> f32,
+    u: f32,
+) -> Option<(T, f32)> {
+    let (mut weighted, mut count, mut total) = ([None; LANES], 0, 0.0);
+    for candidate in candidates {
+        let weight = weight(&candidate);
+        if !weight.is_finite() {
+            return Some((candidate, 1.0));
+        }
+        if weight > 0.0 {
+            weighted[count] = Some((candidate, weight));
+            (count, total) = (count + 1, total + weight);
+        }
+    }
+    let mut rest = u * total;
+    let mut chosen = None;
+    for (candidate, weight) in weighted.into_iter().flatten() {
+        chosen = Some((candidate, weight / total));
+        if rest < weight {
+            break;
+        }
+        rest -= weight;
+    }
+    chosen
+}
+
+/// Samples of a few lights at a vertex, one a lane.
+struct CandidateLanes<'l> {
+    lights: &'l [u32],
+    samples: LightSampleLanes,
+    bsdf: BsdfLanes,
+}
+
+impl CandidateLanes<'_> {
+    /// Iterates over the candidates that bring light.
+    fn iter(&self, vertex: &LitVertex<'_>) -> impl Iterator<Item = LightCandidate> {
+        let keeps_dark = vertex.point.control.is_some();
+        self.lights.iter().enumerate().filter_map(move |(lane, light)| {
+            let (sample, bsdf) = (self.samples.lane(lane)?, self.bsdf.lane(lane));
+            let is_lit = bsdf.0 != Vec3::ZERO || keeps_dark;
+            is_lit.then_some(LightCandidate { light: *light, pmf: 1.0, sample, bsdf })
+        })
+    }
+}
+
 impl LitVertex<'_> {
+    /// Samples all lights at once, each with the two numbers of its lane.
+    fn candidates<'l>(&self, scene: &RenderScene, lanes: &'l LightLanes, u: &[[f32; LANES]; 2]) -> CandidateLanes<'l> {
+        let lights = lanes.lights();
+        let samples = lanes.sample(&scene.lights, self.point.surface.position, u);
+        CandidateLanes { lights, samples, bsdf: self.point.bsdf.eval_lanes(&samples.direction, lights.len()) }
+    }
+
+    /// Samples the light of a scene that samples one light alone.
+    fn only_candidate(&self, scene: &RenderScene, u: Vec2) -> Option<LightCandidate> {
+        let light = scene.lights.iter().position(TracedLight::is_sampled)?;
+        self.candidate(scene, light as u32, 1.0, u)
+    }
+
     /// Samples a light that is sampled with this probability. Returns none where it brings no light.
     fn candidate(&self, scene: &RenderScene, light: u32, pmf: f32, u: Vec2) -> Option<LightCandidate> {
         let sample = scene.lights[light as usize].sample(self.point.surface.position, u)?;
@@ -179,45 +257,6 @@ impl LitVertex<'_> {
     }
 }
 
-/// One of a stream of items, chosen in proportion to its weight (Chao 1982, "A General Purpose Unequal Probability
-/// Sampling Plan").
-#[derive(Debug)]
-struct Reservoir<T> {
-    /// The chosen item and its weight.
-    chosen: Option<(T, f32)>,
-    /// Sum of all weights.
-    total: f32,
-    /// A number in [0, 1), rescaled after each choice.
-    u: f32,
-}
-
-impl<T> Reservoir<T> {
-    /// Returns an empty reservoir that chooses by `u` in [0, 1).
-    fn new(u: f32) -> Self {
-        Reservoir { chosen: None, total: 0.0, u }
-    }
-
-    /// Adds an item. One whose weight is not a number is chosen, so that the film reports it.
-    fn add(&mut self, item: T, weight: f32) {
-        if weight == 0.0 {
-            return;
-        }
-        self.total += weight;
-        let probability = weight / self.total;
-        if self.u < probability || probability.is_nan() {
-            self.chosen = Some((item, weight));
-            self.u /= probability;
-        } else {
-            self.u = (self.u - probability) / (1.0 - probability);
-        }
-    }
-
-    /// Returns the chosen item and its probability.
-    fn chosen(self) -> Option<(T, f32)> {
-        self.chosen.map(|(item, weight)| (item, weight / self.total))
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -228,20 +267,20 @@ mod tests {
     use std::ops::ControlFlow;
 
     #[test]
-    fn a_reservoir_chooses_in_proportion_to_the_weights() {
+    fn candidates_are_chosen_in_proportion_to_their_weights() {
         let weights = [0.0, 1.0, 4.0, 0.0, 2.0, 3.0];
         let mut counts = [0; 6];
         for i in 0..1000 {
-            let mut reservoir = Reservoir::new((i as f32 + 0.5) / 1000.0);
-            (0..).zip(weights).for_each(|(item, weight)| reservoir.add(item, weight));
-            let (item, probability) = reservoir.chosen().unwrap();
+            let u = (i as f32 + 0.5) / 1000.0;
+            let (item, probability) = choose_in_proportion(0..6, |item| weights[*item], u).unwrap();
             assert!((probability - weights[item] / 10.0).abs() < 1e-6, "{item}: {probability}");
             counts[item] += 1;
         }
         for (count, weight) in counts.into_iter().zip(weights) {
             assert!((f64::from(count) - 100.0 * f64::from(weight)).abs() <= 1.0, "{counts:?}");
         }
-        assert!(Reservoir::<()>::new(0.5).chosen().is_none());
+        assert!(choose_in_proportion(0..6, |_| 0.0, 0.5).is_none());
+        assert_eq!(choose_in_proportion(0..6, |item| if *item == 4 { f32::NAN } else { 1.0 }, 0.1), Some((4, 1.0)));
     }
 
     /// A glossy ball and a screen on a floor; of a wide panel, a small one and a bulb, each lights other sides.

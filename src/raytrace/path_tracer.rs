@@ -7,7 +7,7 @@
 //! Which technique finds the light behind panes, bodies of glass and mirrors: `straight_path`.
 
 use super::aggregate::Hit;
-use super::bsdf::{Bsdf, Polarisation, SurfaceBsdf};
+use super::bsdf::{Bsdf, BsdfSample, Polarisation, SurfaceBsdf};
 use super::caustics::{CausticMis, GatherDensities, GatherPoint, PhotonMap};
 use super::emitters::MisVertex;
 use super::events::{Lobe, PathEnd, PathEvent, PathVertex};
@@ -99,17 +99,6 @@ pub struct SoftPoint<'a> {
     pub point: &'a ShadingPoint<'a>,
     /// The BSDF of its surface.
     pub bsdf: &'a SurfaceBsdf<'a>,
-}
-
-/// The light sampling at a vertex.
-#[derive(Clone, Copy, Debug)]
-pub enum LightSampling {
-    /// Lights are sampled for this path.
-    Sample,
-    /// Lights were sampled once for so many paths.
-    Shared { paths: f32 },
-    /// No lobe can use light samples.
-    Skip,
 }
 
 impl PathState {
@@ -212,7 +201,7 @@ impl<'a> PathTracer<'a> {
             outside: true,
         };
         self.gather_photons(&path, surface, bsdf, limits, sink);
-        if self.scatter(&mut path, &point, LightSampling::Sample, sampler, limits, sink) {
+        if self.scatter(&mut path, &point, sampler, limits, sink) {
             self.extend(&mut path, sampler, limits, sink);
         }
     }
@@ -349,8 +338,13 @@ impl<'a> PathTracer<'a> {
             }
 
             // Continue with one path
-            let lights = if samples_lights { LightSampling::Sample } else { LightSampling::Skip };
-            if !self.scatter(path, &point, lights, sampler, limits, sink) {
+            let goes_on = if samples_lights {
+                self.scatter(path, &point, sampler, limits, sink)
+            } else {
+                let set = sampler.set(Dimensions::Bsdf { depth: path.depth });
+                self.leave(path, &point, 1.0, &set, limits, sink)
+            };
+            if !goes_on {
                 return;
             }
         }
@@ -382,23 +376,14 @@ impl<'a> PathTracer<'a> {
         &mut self,
         path: &mut PathState,
         point: &ShadingPoint<'_>,
-        lights: LightSampling,
         sampler: &Sampler,
         limits: PathLimits,
         sink: &mut impl RadianceSink,
     ) -> bool {
-        // Sample the lights
         let depth = path.depth;
         let [light_set, bsdf_set] = sampler.pair(Dimensions::Light { slot: 0, depth }, Dimensions::Bsdf { depth });
-        let paths_per_light_sample = match lights {
-            LightSampling::Sample => {
-                self.sample_lights(path, point, sampler, &light_set, 1.0, sink);
-                1.0
-            }
-            LightSampling::Shared { paths } => paths,
-            LightSampling::Skip => 1.0,
-        };
-        self.leave(path, point, paths_per_light_sample, &bsdf_set, limits, sink)
+        self.sample_lights(path, point, sampler, &light_set, 1.0, sink);
+        self.leave(path, point, 1.0, &bsdf_set, limits, sink)
     }
 
     /// Samples the BSDF at a vertex and updates the path to leave it. Returns false if the path ends.
@@ -412,12 +397,25 @@ impl<'a> PathTracer<'a> {
         limits: PathLimits,
         sink: &mut impl RadianceSink,
     ) -> bool {
+        let [lobe, roulette] = sampler::last_pair(bsdf_set);
+        let sample = point.bsdf.sample(point.lobe_choice.unwrap_or(lobe), sampler::first_pair(bsdf_set));
+        self.leave_along(path, point, paths_per_light_sample, (&sample, roulette), limits, sink)
+    }
+
+    /// Updates the path to leave a vertex along a sample of its BSDF. Returns false if the path ends.
+    #[inline(always)]
+    pub fn leave_along(
+        &mut self,
+        path: &mut PathState,
+        point: &ShadingPoint<'_>,
+        paths_per_light_sample: f32,
+        (sample, roulette): (&Option<BsdfSample>, f32),
+        limits: PathLimits,
+        sink: &mut impl RadianceSink,
+    ) -> bool {
         let ShadingPoint { surface, bsdf, distance, outside, .. } = *point;
         let depth = path.depth;
-
-        // Sample the BSDF
-        let [lobe, roulette] = sampler::last_pair(bsdf_set);
-        let Some(sample) = &bsdf.sample(point.lobe_choice.unwrap_or(lobe), sampler::first_pair(bsdf_set)) else {
+        let Some(sample) = sample else {
             sink.record(|| PathEvent::End(PathEnd::Absorbed));
             return false;
         };

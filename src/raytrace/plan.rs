@@ -3,6 +3,7 @@
 use super::bsdf::TracedMaterial;
 use super::lens::Lens;
 use super::lights::TracedLight;
+use crate::math::simd::LANES;
 use crate::scene::{Alpha, TextureSlot};
 use std::fmt;
 
@@ -14,6 +15,8 @@ const NEGLIGIBLE: f32 = 1.0 / 512.0;
 const SPLIT_FACTOR: u32 = 4;
 /// The same where each path samples one of many lights: variance times seconds is 0.8 of that of four paths under 60.
 const SPLIT_FACTOR_WITH_MANY_LIGHTS: u32 = 8;
+/// The paths that leave a vertex are sampled at once, one a lane.
+const _: () = assert!(SPLIT_FACTOR_WITH_MANY_LIGHTS as usize <= LANES);
 /// Paths from there with people in the picture: most noise is that of the first vertices (which fibre, where a walk
 /// comes out, which of two surfaces in a pixel). Variance times rays at 4 samples a pixel, against two paths: 0.70 to
 /// 0.80 in the five studios three_point, rembrandt, high_key, group and butterfly; 1.13 to 1.5 in scenes without hair

@@ -7,7 +7,7 @@ use super::film::{self, Layer};
 use super::geometry::{BodyInstance, Instance, MeshGeometry};
 use super::geometry_cache::GeometryCache;
 use super::lens::{Lens, PixelCamera};
-use super::lights::{EmitterBvh, LightSampler, TracedLight};
+use super::lights::{EmitterBvh, LightLanes, LightSampler, TracedLight};
 use super::moments::{self, Moment};
 use super::plan::RenderPlan;
 use super::render_scene::{ROOM, RenderScene};
@@ -165,6 +165,7 @@ fn prepare_at(
         materials: tables.materials,
         textures: tables.textures,
         light_sampler: LightSampler::new(&lights),
+        light_lanes: LightLanes::new(&lights),
         emitter_bvh: EmitterBvh::new(&lights),
         casters,
         lights,

@@ -6,7 +6,7 @@ use super::caustics::CausticCasters;
 use super::film::Layer;
 use super::geometry::SurfaceInteraction;
 use super::lens::Lens;
-use super::lights::{EmitterBvh, LightSampler, TracedLight};
+use super::lights::{EmitterBvh, LightLanes, LightSampler, TracedLight};
 use super::medium_stack::MediumStack;
 use super::plan::RenderPlan;
 use super::sampler::{Dimensions, Sampler};
@@ -30,6 +30,8 @@ pub struct RenderScene {
     pub(super) light_ids: Vec<LightId>,
     /// Samples one of `lights` by importance.
     pub(super) light_sampler: LightSampler,
+    /// Samples all of `lights` at once, if there is a lane for each.
+    pub(super) light_lanes: Option<LightLanes>,
     /// Finds those of `lights` that a ray crosses.
     pub(super) emitter_bvh: EmitterBvh,
     /// Surfaces that cast caustics; empty where the plan has no photons.

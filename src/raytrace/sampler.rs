@@ -135,8 +135,15 @@ impl Sampler {
     /// The numbers of two sets of dimensions, at the cost of one.
     #[inline]
     pub fn pair(&self, first: Dimensions, second: Dimensions) -> [Set; 2] {
-        let seed = |dimensions: Dimensions| hash(self.pixel_seed ^ hash(dimensions.key()));
-        simd::dispatch(Pair { index: self.index, seeds: [seed(first), seed(second)] })
+        self.pair_with(first, self, second)
+    }
+
+    /// The numbers of a set of dimensions, and those of a set of another sample, at the cost of one.
+    #[inline]
+    pub fn pair_with(&self, dimensions: Dimensions, other: &Sampler, others: Dimensions) -> [Set; 2] {
+        let seed = |sampler: &Sampler, dimensions: Dimensions| hash(sampler.pixel_seed ^ hash(dimensions.key()));
+        let seeds = [seed(self, dimensions), seed(other, others)];
+        simd::dispatch(Pair { indices: [self.index, other.index], seeds })
     }
 }
 
@@ -153,9 +160,9 @@ impl Dimensions {
     }
 }
 
-/// The computation of [`Sampler::pair`].
+/// The computation of [`Sampler::pair_with`].
 struct Pair {
-    index: u32,
+    indices: [u32; 2],
     seeds: [u32; 2],
 }
 
@@ -164,7 +171,7 @@ impl KernelTask for Pair {
 
     #[inline(always)]
     fn run<K: Kernels>(self) -> [Set; 2] {
-        K::sobol_4d(self.index, self.seeds)
+        K::sobol_4d(self.indices, self.seeds)
     }
 }
 

@@ -27,6 +27,7 @@ impl DiffuseLobe {
     }
 
     /// Samples an incident direction, local frame.
+    #[inline(always)]
     pub fn sample(&self, u: Vec2) -> Vec3 {
         let w = warp::cosine_hemisphere(u);
         self.normal.map_or(w, |normal| {

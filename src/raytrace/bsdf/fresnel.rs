@@ -32,6 +32,7 @@ pub fn pane_reflectances(cos_incident: f32, ior: f32) -> [f32; 2] {
 
 /// Returns Schlick's approximation (1994) for a metal of normal reflectance `f0`; `cos_half` is the cosine at the half
 /// vector.
+#[inline(always)]
 pub fn schlick(f0: Vec3, cos_half: f32) -> Vec3 {
     let x = (1.0 - cos_half).clamp(0.0, 1.0);
     let x2 = x * x;

@@ -9,6 +9,7 @@ use std::f32::consts::PI;
 pub const MIN_ALPHA: f32 = 1e-3;
 
 /// Returns the distribution of normals D(m), 1/sr (Walter et al. 2007, equation 33).
+#[inline(always)]
 pub fn distribution(m: Vec3, alpha: f32) -> f32 {
     let a2 = alpha * alpha;
     // x2 + y2 is precise near the pole, where 1 - z2 is not.
@@ -19,6 +20,7 @@ pub fn distribution(m: Vec3, alpha: f32) -> f32 {
 
 /// Returns Smith's Lambda (Heitz 2014, equation 72). The masking G1 is 1 / (1 + Lambda(o)), the height-correlated
 /// masking-shadowing G2 is 1 / (1 + Lambda(o) + Lambda(i)) (equations 43 and 99).
+#[inline(always)]
 pub fn lambda(w: Vec3, alpha: f32) -> f32 {
     let cos2 = w.z * w.z;
     let tan2 = (1.0 - cos2).max(0.0) / cos2.max(f32::MIN_POSITIVE);
@@ -27,6 +29,7 @@ pub fn lambda(w: Vec3, alpha: f32) -> f32 {
 
 /// Samples a facet normal among those that are visible from `wo` (Dupuy and Benyoub 2023, "Sampling Visible GGX Normals
 /// with Spherical Caps").
+#[inline(always)]
 pub fn sample_visible_normal(wo: Vec3, alpha: f32, u: Vec2) -> Vec3 {
     // Warp to the hemisphere configuration
     let stretched = Vec3::new(wo.x * alpha, wo.y * alpha, wo.z).normalize_or(Vec3::Z);
@@ -40,6 +43,7 @@ pub fn sample_visible_normal(wo: Vec3, alpha: f32, u: Vec2) -> Vec3 {
 }
 
 /// Reflects a direction about a facet normal.
+#[inline(always)]
 pub fn reflect(wo: Vec3, m: Vec3) -> Vec3 {
     2.0 * wo.dot(m) * m - wo
 }

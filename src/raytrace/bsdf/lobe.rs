@@ -13,11 +13,6 @@ pub enum Lobe {
     Subsurface,
 }
 
-impl Lobe {
-    /// The lobes that have a density, in the order of summation.
-    pub const NON_SPECULAR: [Lobe; 2] = [Lobe::Diffuse, Lobe::Microfacet];
-}
-
 /// The probabilities with which the lobes are sampled.
 #[derive(Clone, Copy, Debug)]
 pub struct LobeProbabilities {

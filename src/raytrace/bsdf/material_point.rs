@@ -5,6 +5,7 @@ use super::blurred_gloss::BlurredGloss;
 use super::ggx;
 use super::material::TracedMaterial;
 use crate::color::luminance;
+use crate::math::simd::LANES;
 use glam::Vec3;
 use std::f32::consts::PI;
 
@@ -78,6 +79,11 @@ impl<'a> MaterialPoint<'a> {
         self.material.has_microfacets
     }
 
+    /// Returns true if the point has a microfacet lobe that is not a delta function.
+    pub fn has_rough_microfacets(&self) -> bool {
+        self.has_microfacets() && !self.is_smooth()
+    }
+
     /// Returns true if the microfacet lobe is a delta function.
     pub fn is_smooth(&self) -> bool {
         self.alpha < ggx::MIN_ALPHA
@@ -99,6 +105,19 @@ impl<'a> MaterialPoint<'a> {
     #[inline]
     pub(super) fn coat_albedo(&self, cos: f32) -> f32 {
         if self.has_microfacets() { self.blend(|tables| tables.coat.at(cos)) } else { 0.0 }
+    }
+
+    /// Returns the directional albedo of the coat for a cosine a lane.
+    #[inline(always)]
+    pub(super) fn coat_albedo_lanes(&self, cosines: &[f32; LANES]) -> [f32; LANES] {
+        if !self.has_microfacets() {
+            return [0.0; LANES];
+        }
+        let lower = self.lower.coat.at_lanes(cosines);
+        self.upper.map_or(lower, |(upper, fraction)| {
+            let upper = upper.coat.at_lanes(cosines);
+            std::array::from_fn(|i| lower[i] + (upper[i] - lower[i]) * fraction)
+        })
     }
 
     /// Returns the directional albedo of the metal for a reflectance of 1.

@@ -17,8 +17,8 @@
 //! A new lobe of surfaces needs
 //! - a file with a `sample` (local direction, or a whole [`BsdfSample`] for a delta lobe) and an `eval` (BSDF times
 //!   cosine, pdf times probability; in the local frame, whose +Z is the shading normal);
-//! - a variant of `Lobe` with its probability in `LobeProbabilities` (`lobe.rs`), and the arms of `sample` and
-//!   `eval_lobe` in `surface.rs`, whose matches are exhaustive;
+//! - a variant of `Lobe` with its probability in `LobeProbabilities` (`lobe.rs`), an arm of `sample` in `surface.rs`,
+//!   whose match is exhaustive, and its part in the sums of `eval` and of `surface_lanes.rs`;
 //! - its parameters in [`TracedMaterial`], with `max_albedo`, `has_non_specular_lobe`, `is_nearly_specular` and
 //!   `is_caustic_caster` kept true;
 //! - a case in `tests.rs` (chi-square of the density, white furnace).
@@ -47,8 +47,10 @@ mod shading_geometry;
 mod sheen;
 mod subsurface;
 mod surface;
+mod surface_lanes;
 mod transmission_tint;
 
+use crate::math::Vec3Lanes;
 pub use blurred_gloss::BlurredGloss;
 pub use dielectric::{Boundary, DielectricInterface, pane_transmittance};
 pub use fibre::{FibreBsdf, TracedFibre};
@@ -60,6 +62,7 @@ pub use polarisation::{Polarisation, TransmittedLight};
 pub use roughness_tables::RoughnessTables;
 pub use sample::BsdfSample;
 pub use surface::SurfaceBsdf;
+pub use surface_lanes::{BsdfLanes, BsdfNumbers, BsdfSampleLanes};
 
 /// The BSDF at a shading point for one outgoing direction.
 #[derive(Clone, Copy, Debug)]
@@ -218,6 +221,27 @@ impl<'a> Bsdf<'a> {
             Bsdf::Surface(surface) => surface.eval(direction),
             Bsdf::Layered(layered) => layered.eval(direction),
             Bsdf::Fibre(fibre) => fibre.eval(direction),
+        }
+    }
+
+    /// Returns what [`Bsdf::eval`] returns for the directions of the first lanes.
+    #[inline(always)]
+    pub fn eval_lanes(&self, directions: &Vec3Lanes, lanes: usize) -> BsdfLanes {
+        if let Bsdf::Surface(surface) = self {
+            return surface.eval_lanes(directions);
+        }
+        let mut values = BsdfLanes::ZERO;
+        for lane in 0..lanes {
+            values.set_lane(lane, self.eval(directions.lane(lane)));
+        }
+        values
+    }
+
+    /// Returns what [`Bsdf::sample`] returns for the numbers of each lane, where all can be sampled at once.
+    pub fn sample_lanes(&self, numbers: &BsdfNumbers) -> Option<BsdfSampleLanes> {
+        match self {
+            Bsdf::Surface(surface) => surface.sample_lanes(numbers),
+            Bsdf::Layered(_) | Bsdf::Fibre(_) => None,
         }
     }
 

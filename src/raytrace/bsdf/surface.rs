@@ -1,11 +1,12 @@
 //! The BSDF of surfaces: a mix of metal, coated diffuse base and clear glass. Its head in [`super`] names the sources.
+//! `surface_lanes.rs` evaluates and samples it for several directions at once.
 
 use super::dielectric::{Boundary, DielectricInterface, DielectricLobe};
 use super::diffuse::DiffuseLobe;
 use super::lobe::{Lobe, LobeProbabilities};
 use super::material::TracedMaterial;
 use super::material_point::{MaterialPoint, TextureFactors};
-use super::microfacet::{self, MicrofacetLobe};
+use super::microfacet::MicrofacetLobe;
 use super::polarisation::Polarisation;
 use super::sample::BsdfSample;
 use super::shading_geometry::ShadingGeometry;
@@ -64,10 +65,11 @@ impl<'a> SurfaceBsdf<'a> {
         self.diffuse.normal.is_some()
     }
 
-    /// Returns true if a direction in the local frame is above the surface of a lobe.
+    /// Returns true if a direction, in the local frame and in world space, is above the surface of a lobe.
     #[inline(always)]
-    fn is_in_front(&self, wi: Vec3) -> bool {
-        wi.z > 0.0 || (self.has_relief() && self.diffuse.cosine(wi) > 0.0)
+    pub(super) fn is_in_front(&self, wi: Vec3, direction: Vec3) -> bool {
+        let is_above_lobe = (wi.z > 0.0) | (self.has_relief() & (self.diffuse.cosine(wi) > 0.0));
+        is_above_lobe & self.geometry.is_above(direction)
     }
 
     /// Returns the shading normal on the side of the outgoing direction.
@@ -105,7 +107,7 @@ impl<'a> SurfaceBsdf<'a> {
     /// are left out of both.
     pub fn eval(&self, direction: Vec3) -> (Vec3, f32) {
         let wi = self.geometry.to_local(direction);
-        if !self.is_in_front(wi) || !self.geometry.is_above(direction) || self.point.transmission >= 1.0 {
+        if !self.is_in_front(wi, direction) || self.point.transmission >= 1.0 {
             return (Vec3::ZERO, 0.0);
         }
         self.eval_local(wi)
@@ -113,32 +115,34 @@ impl<'a> SurfaceBsdf<'a> {
 
     /// Sums the non-specular lobes for a direction in the local frame.
     fn eval_local(&self, wi: Vec3) -> (Vec3, f32) {
-        let (mut value, mut pdf) = (Vec3::ZERO, 0.0);
-        for lobe in Lobe::NON_SPECULAR {
-            let (lobe_value, lobe_pdf) = self.eval_lobe(lobe, wi);
-            value += lobe_value;
-            pdf += lobe_pdf;
+        let mut sum = self.eval_diffuse(wi, self.point.coat_albedo(self.diffuse.cosine(wi)));
+        if self.has_gloss() {
+            let gloss = self.eval_gloss(wi);
+            sum = (sum.0 + gloss.0, sum.1 + gloss.1);
         }
         let opaque = 1.0 - self.point.transmission;
-        (value * opaque, pdf * opaque)
+        (sum.0 * opaque, sum.1 * opaque)
     }
 
-    /// Returns BSDF times cosine and pdf times probability of one lobe. 0 for delta lobes.
+    /// Returns BSDF times cosine and pdf times probability of the diffuse lobe, from the coat's albedo for the direction.
     #[inline(always)]
-    fn eval_lobe(&self, lobe: Lobe, wi: Vec3) -> (Vec3, f32) {
-        let probability = self.probabilities.opaque(lobe);
-        match lobe {
-            Lobe::Dielectric | Lobe::Subsurface => (Vec3::ZERO, 0.0),
-            Lobe::Microfacet if self.has_relief() && wi.z <= 0.0 => (Vec3::ZERO, 0.0),
-            Lobe::Microfacet => self.microfacet.eval(&self.point, self.geometry.wo, wi, probability),
-            Lobe::Diffuse => {
-                let cosine = self.diffuse.cosine(wi);
-                if self.has_relief() && cosine <= 0.0 {
-                    return (Vec3::ZERO, 0.0);
-                }
-                self.diffuse.eval(cosine, self.point.coat_albedo(cosine), probability)
-            }
-        }
+    pub(super) fn eval_diffuse(&self, wi: Vec3, coat_albedo: f32) -> (Vec3, f32) {
+        let cosine = self.diffuse.cosine(wi);
+        let (value, pdf) = self.diffuse.eval(cosine, coat_albedo, self.probabilities.opaque(Lobe::Diffuse));
+        if cosine > 0.0 { (value, pdf) } else { (Vec3::ZERO, 0.0) }
+    }
+
+    /// Returns true if it has a microfacet lobe that is not a delta function.
+    pub(super) fn has_gloss(&self) -> bool {
+        self.point.has_rough_microfacets() && self.microfacet.reflects()
+    }
+
+    /// Returns BSDF times cosine and pdf times probability of the microfacet lobe, which is rough.
+    #[inline(always)]
+    pub(super) fn eval_gloss(&self, wi: Vec3) -> (Vec3, f32) {
+        let probability = self.probabilities.opaque(Lobe::Microfacet);
+        let (value, pdf) = self.microfacet.eval(&self.point, self.geometry.wo, wi, probability);
+        if wi.z > 0.0 { (value, pdf) } else { (Vec3::ZERO, 0.0) }
     }
 
     /// Samples a direction for a lobe number in 0..1 and a point of the unit square. Returns none for samples without
@@ -155,7 +159,7 @@ impl<'a> SurfaceBsdf<'a> {
         };
         // Discard directions below the surface
         let direction = self.geometry.to_world(wi);
-        if !self.is_in_front(wi) || !self.geometry.is_above(direction) {
+        if !self.is_in_front(wi, direction) {
             return None;
         }
         // Evaluate all lobes in that direction
@@ -166,7 +170,7 @@ impl<'a> SurfaceBsdf<'a> {
     /// Samples the microfacet lobe of a smooth surface: specular reflection.
     fn sample_smooth_microfacet(&self) -> Option<BsdfSample> {
         let wo = self.geometry.wo;
-        let reflectance = microfacet::reflectance(&self.point, wo, wo.z);
+        let reflectance = self.microfacet.reflectance(&self.point, wo.z);
         let weight = reflectance / self.probabilities.microfacet;
         Some(BsdfSample { weight, ..BsdfSample::specular(self.geometry.specular_reflection()?) })
     }

@@ -1,6 +1,7 @@
 //! Statistical tests of BSDFs: densities, energy, and the geometry of specular directions.
 
 use super::*;
+use crate::math::simd::LANES;
 use crate::math::{orthonormal_basis, warp};
 use crate::scene::{Material, MaterialPreset};
 use crate::statistics::{ChiSquare, SampleMean, TestRng, sidak_level};
@@ -135,6 +136,53 @@ fn no_normal_map_reflects_more_light_than_arrives() {
             }
         }
     }
+}
+
+#[test]
+fn lanes_evaluate_and_sample_a_bsdf_as_one_direction_after_the_other() {
+    let mut rng = TestRng::new(31);
+    let plastic = Material { base_color: [0.7, 0.4, 0.2], roughness: 0.3, ..Material::default() };
+    let materials = [
+        TracedMaterial::new(&plastic),
+        TracedMaterial::new(&Material { ior: 1.0, roughness: 1.0, ..plastic.clone() }),
+        TracedMaterial::new(&Material { metallic: 1.0, ..plastic.clone() }),
+        TracedMaterial::new(&Material { roughness: 0.0, ..plastic.clone() }),
+        TracedMaterial::new(&Material { transmission: 0.4, ..plastic.clone() }),
+        TracedMaterial::new(&Material { transmission: 1.0, ..plastic.clone() }),
+        TracedMaterial::new(&MaterialPreset::Velvet.material()),
+        mapped(&Material { metallic: 0.3, ..plastic.clone() }),
+        TracedMaterial::new(&plastic).with_blurred_gloss(&std::sync::Arc::new(BlurredGloss::new(1.5, 0.6))),
+    ];
+    let (mut lit, mut sampled) = (0, 0);
+    for (material, _) in materials.iter().flat_map(|material| std::iter::repeat_n(material, 40).zip(0..)) {
+        let (normal, wo) = (rng.direction(), rng.direction());
+        let plain = Bsdf::new(material, Vec3::ONE, normal, normal, wo);
+        let [mut relief, mut soft, mut coat] = [plain; 3];
+        relief.set_relief(rng.direction());
+        soft.set_subsurface();
+        coat.remove_matte_base();
+        for bsdf in [plain, relief, soft, coat, Bsdf::at_exit(material, normal, normal)] {
+            // Evaluate
+            let mut directions = Vec3Lanes::ZERO;
+            (0..LANES).for_each(|lane| directions.set_lane(lane, rng.direction()));
+            let values = bsdf.eval_lanes(&directions, LANES);
+            for lane in 0..LANES {
+                assert_eq!(values.lane(lane), bsdf.eval(directions.lane(lane)), "{bsdf:?}");
+                lit += usize::from(values.lane(lane).1 > 0.0);
+            }
+            // Sample
+            let mut numbers = || std::array::from_fn(|_| rng.uniform());
+            let numbers = BsdfNumbers { lobe: numbers(), u: [numbers(), numbers()] };
+            let Some(samples) = bsdf.sample_lanes(&numbers) else { continue };
+            for lane in 0..LANES {
+                let u = Vec2::new(numbers.u[0][lane], numbers.u[1][lane]);
+                let (ours, one) = (samples.lane(lane), bsdf.sample(numbers.lobe[lane], u));
+                assert_eq!(format!("{ours:?}"), format!("{one:?}"), "{bsdf:?}");
+                sampled += usize::from(ours.is_some());
+            }
+        }
+    }
+    assert!(lit > 4000 && sampled > 4000, "{lit} directions, {sampled} samples");
 }
 
 #[test]

@@ -62,27 +62,29 @@ impl Disc {
         height * height + lateral * lateral < 0.25 * self.radius * self.radius
     }
 
-    /// Samples a point of the disc. Returns it with the density of its direction, 1/sr; none for rejected samples and
-    /// for a disc seen edge-on.
+    /// Samples a point of the disc, seen from `from`. Returns the way to it and the density of its direction, 1/sr; none
+    /// for rejected samples and for a disc seen edge-on.
     pub fn sample(&self, from: Vec3, u: Vec2) -> Option<(Vec3, f32)> {
         if self.is_near(from) {
-            let hit = self.bounding_square().seen_from(from).sample(from, u)?;
-            return ((hit.0 - self.centre).length_squared() <= self.radius * self.radius).then_some(hit);
+            let (to, pdf) = self.bounding_square().seen_from(from).sample(from, u)?;
+            let is_on_disc = (from + to - self.centre).length_squared() <= self.radius * self.radius;
+            return is_on_disc.then_some((to, pdf));
         }
         let offset = warp::concentric_disc(u) * self.radius;
-        let target = self.centre + self.right * offset.x + self.up * offset.y;
-        let pdf = self.pdf(from, target);
-        (pdf > 0.0 && pdf.is_finite()).then_some((target, pdf))
+        let to = self.centre + self.right * offset.x + self.up * offset.y - from;
+        let pdf = self.area_pdf(to);
+        (pdf > 0.0 && pdf.is_finite()).then_some((to, pdf))
     }
 
-    /// Returns the density of a direction towards `target` on the disc, 1/sr.
-    pub fn pdf(&self, from: Vec3, target: Vec3) -> f32 {
-        if self.is_near(from) {
-            return self.bounding_square().seen_from(from).pdf(from, target);
-        }
-        let to = target - from;
-        let cos = to.normalize_or_zero().dot(self.normal()).abs();
-        to.length_squared() / (cos * self.area())
+    /// Returns the density of the direction of a way `to` a point of the disc, 1/sr.
+    pub fn pdf(&self, from: Vec3, to: Vec3) -> f32 {
+        if self.is_near(from) { self.bounding_square().seen_from(from).pdf(to) } else { self.area_pdf(to) }
+    }
+
+    fn area_pdf(&self, to: Vec3) -> f32 {
+        let distance2 = to.length_squared();
+        // The cosine is the height over the distance
+        distance2 * distance2.sqrt() / (to.dot(self.normal()).abs() * self.area())
     }
 }
 
@@ -101,9 +103,9 @@ mod tests {
             let mut sum = 0.0;
             for i in 0..n * n {
                 let u = Vec2::new((i % n) as f32 + 0.5, (i / n) as f32 + 0.5) / n as f32;
-                let Some((target, pdf)) = disc.sample(from, u) else { continue };
-                assert!((disc.pdf(from, target) / pdf - 1.0).abs() < 1e-3);
-                let direction = (target - from).normalize();
+                let Some((to, pdf)) = disc.sample(from, u) else { continue };
+                assert!((disc.pdf(from, to) / pdf - 1.0).abs() < 1e-3);
+                let direction = to.normalize();
                 sum += -direction.z / pdf / (n * n) as f32;
             }
             // A receiver parallel to a disc of luminance 1 (Walsh 1958): E = pi / 2 (1 - (h2 + b2 - R2) / root),

@@ -3,6 +3,7 @@
 //! - [`TracedLight`]: one light; samples a direction towards it, or intersects a ray with its emitter
 //! - `rect`, `disc`, `sphere`, `sun`: the shapes of emitters with their sampling densities
 //! - [`LightSampler`]: chooses one light by its importance at a shading point, with a `LightBvh` over `LightBounds`
+//! - [`LightLanes`]: a few lights, all sampled at once
 //! - [`EmitterBvh`]: finds the emitters that a ray hits
 //!
 //! Values are photometric and white (luminance of an RGB of luminance 1). The light's colour is applied to its film
@@ -17,6 +18,7 @@ mod disc;
 mod emitter_bvh;
 mod light_bounds;
 mod light_bvh;
+mod light_lanes;
 mod light_sampler;
 mod rect;
 mod sphere;
@@ -24,6 +26,7 @@ mod sun;
 mod traced_light;
 
 pub use emitter_bvh::EmitterBvh;
+pub use light_lanes::{LightLanes, LightSampleLanes};
 pub use light_sampler::{LightImportances, LightSampler};
 pub use traced_light::{EmitterHit, LightSample, TracedLight};
 

@@ -222,13 +222,13 @@ fn light_sampling_agrees_with_the_intersection_of_rays() {
     }
 }
 
-/// Returns lights of all kinds around the origin.
 /// Returns a measured distribution with a narrow beam to one side.
 fn lopsided_table() -> Arc<IntensityTable> {
     let candela = [[50.0, 900.0, 20.0, 0.0], [50.0, 30.0, 10.0, 0.0], [50.0, 900.0, 20.0, 0.0]].concat();
     Arc::new(IntensityTable::new(vec![0.0, 20.0, 40.0, 120.0], vec![0.0, 180.0, 360.0], candela).unwrap())
 }
 
+/// Returns lights of all kinds around the origin.
 pub(super) fn random_lights(count: usize, rng: &mut TestRng) -> Vec<TracedLight> {
     let emitters = [
         Emitter::Point,
@@ -252,6 +252,34 @@ pub(super) fn random_lights(count: usize, rng: &mut TestRng) -> Vec<TracedLight>
         TracedLight::new(&PhotometricLight::in_frame(&light, table, frame, &camera), Vec3::ZERO).unwrap()
     };
     (0..count).map(light).collect()
+}
+
+#[test]
+fn lanes_sample_lights_as_they_are_sampled_one_by_one() {
+    let mut rng = TestRng::new(19);
+    let (mut compared, mut dark) = (0, 0);
+    for _ in 0..40 {
+        // Seven of eight kinds are sampled: rectangles with and without a grid, and all others
+        let mut lights = random_lights(8, &mut rng);
+        lights[1] = traced(Emitter::RectPanel { width_m: 0.6, height_m: 0.9 }, Output::Lumens(1000.0));
+        let lanes = LightLanes::new(&lights).unwrap();
+        assert_eq!(lanes.lights(), [0, 1, 2, 3, 4, 5, 6]);
+        for from in POINTS.into_iter().chain([Vec3::ZERO, Vec3::X]) {
+            let u = [(); 2].map(|()| std::array::from_fn(|_| rng.uniform()));
+            let samples = lanes.sample(&lights, from, &u);
+            for (lane, light) in lanes.lights().iter().enumerate() {
+                let one = lights[*light as usize].sample(from, Vec2::new(u[0][lane], u[1][lane]));
+                let ours = samples.lane(lane).filter(|sample| sample.value != 0.0);
+                let one = one.filter(|sample| sample.value != 0.0);
+                assert_eq!(format!("{ours:?}"), format!("{one:?}"), "light {light} from {from}");
+                if ours.is_some() { compared += 1 } else { dark += 1 }
+            }
+        }
+    }
+    assert!(compared > 1000 && dark > 200, "{compared} samples, {dark} without light");
+    // One light, or more than lanes, are sampled otherwise
+    assert!(LightLanes::new(&random_lights(1, &mut rng)).is_none());
+    assert!(LightLanes::new(&random_lights(12, &mut rng)).is_none());
 }
 
 #[test]

@@ -170,7 +170,7 @@ impl TracedLight {
     }
 
     /// Returns the transmission of the modifier in a unit direction away from the light.
-    fn beam_transmission(&self, away: Vec3) -> f32 {
+    pub(super) fn beam_transmission(&self, away: Vec3) -> f32 {
         self.beam.as_ref().map_or(1.0, |oriented| oriented.beam.transmission(oriented.light_from_world * away))
     }
 
@@ -297,25 +297,25 @@ impl TracedLight {
 
     /// Samples a direction towards the light, without its modifier.
     fn sample_source(&self, point: Vec3, u: Vec2) -> Option<LightSample> {
-        match self.source {
-            LightSource::Point { position, intensity } => sample_position(point, position, intensity),
+        match &self.source {
+            LightSource::Point { position, intensity } => sample_position(point, *position, *intensity),
             LightSource::Spot { position, axis, intensity, inner_deg, outer_deg } => {
-                let falloff = cone_falloff_at(angle_between(point - position, axis), inner_deg, outer_deg);
-                if falloff > 0.0 { sample_position(point, position, intensity * falloff) } else { None }
+                let falloff = cone_falloff_at(angle_between(point - position, *axis), *inner_deg, *outer_deg);
+                if falloff > 0.0 { sample_position(point, *position, intensity * falloff) } else { None }
             }
             LightSource::Rect { rect, luminance } => {
-                if !is_in_front(point, rect.centre, rect.normal()) {
+                if !rect.is_in_front(point) {
                     return None;
                 }
-                let (target, pdf) = rect.seen_from(point).sample(point, u)?;
-                sample_target(point, target, luminance, pdf)
+                let (to, pdf) = rect.seen_from(point).sample(point, u)?;
+                sample_way(to, *luminance, pdf)
             }
             LightSource::Disc { disc, luminance } => {
-                if !is_in_front(point, disc.centre, disc.normal()) {
+                if (point - disc.centre).dot(disc.normal()) <= 0.0 {
                     return None;
                 }
-                let (target, pdf) = disc.sample(point, u)?;
-                sample_target(point, target, luminance, pdf)
+                let (to, pdf) = disc.sample(point, u)?;
+                sample_way(to, *luminance, pdf)
             }
             LightSource::Sphere { sphere, luminance } => {
                 let (direction, distance, pdf) = sphere.sample(point, u)?;
@@ -323,7 +323,7 @@ impl TracedLight {
             }
             LightSource::Sun(sun) => {
                 if sun.is_delta() {
-                    return Some(sample_delta_sun(&sun));
+                    return Some(sample_delta_sun(sun));
                 }
                 let (direction, pdf) = sun.sample(u);
                 let value = sun.luminance() / pdf;
@@ -346,20 +346,20 @@ impl TracedLight {
 
     /// Intersects a ray with the emitter, without its modifier. Panels emit to the front only.
     fn intersect_source(&self, origin: Vec3, direction: Vec3) -> Option<EmitterHit> {
-        match self.source {
+        match &self.source {
             LightSource::Point { .. } | LightSource::Spot { .. } => None,
             LightSource::Rect { rect, luminance } => {
                 let is_front = direction.dot(rect.normal()) < 0.0;
                 let distance = is_front.then(|| rect.intersect(origin, direction)).flatten();
-                distance.map(|distance| EmitterHit::at(distance, luminance))
+                distance.map(|distance| EmitterHit::at(distance, *luminance))
             }
             LightSource::Disc { disc, luminance } => {
                 let is_front = direction.dot(disc.normal()) < 0.0;
                 let distance = is_front.then(|| disc.intersect(origin, direction)).flatten();
-                distance.map(|distance| EmitterHit::at(distance, luminance))
+                distance.map(|distance| EmitterHit::at(distance, *luminance))
             }
             LightSource::Sphere { sphere, luminance } => {
-                sphere.intersect(origin, direction).map(|distance| EmitterHit::at(distance, luminance))
+                sphere.intersect(origin, direction).map(|distance| EmitterHit::at(distance, *luminance))
             }
             LightSource::Sun(sun) => sun.contains(direction).then(|| EmitterHit::at(f32::INFINITY, sun.luminance())),
             LightSource::Surround { luminance } => {
@@ -372,9 +372,9 @@ impl TracedLight {
     /// Returns the density with which [`TracedLight::sample`] samples a direction that hits the emitter at `distance`,
     /// 1/sr.
     pub fn pdf(&self, point: Vec3, direction: Vec3, distance: f32) -> f32 {
-        match self.source {
-            LightSource::Rect { rect, .. } => rect.seen_from(point).pdf(point, point + direction * distance),
-            LightSource::Disc { disc, .. } => disc.pdf(point, point + direction * distance),
+        match &self.source {
+            LightSource::Rect { rect, .. } => rect.seen_from(point).pdf(direction * distance),
+            LightSource::Disc { disc, .. } => disc.pdf(point, direction * distance),
             LightSource::Sphere { sphere, .. } => sphere.pdf(point),
             LightSource::Sun(sun) => sun.pdf(),
             LightSource::Surround { .. } => self.environment.as_ref().map_or(0.0, |map| map.pdf(direction)),
@@ -391,19 +391,18 @@ fn sample_position(point: Vec3, position: Vec3, intensity: f32) -> Option<LightS
     (distance > 0.0 && value.is_finite()).then(|| LightSample { direction: to / distance, distance, value, pdf: None })
 }
 
-/// Returns the sample of a point on an area light.
-fn sample_target(point: Vec3, target: Vec3, luminance: f32, pdf: f32) -> Option<LightSample> {
-    let to = target - point;
+/// Returns the sample of a point on an area light, for the way to it.
+fn sample_way(to: Vec3, luminance: f32, pdf: f32) -> Option<LightSample> {
     let distance = to.length();
-    (distance > 0.0).then(|| LightSample { direction: to / distance, distance, value: luminance / pdf, pdf: Some(pdf) })
+    (distance > 0.0).then(|| LightSample {
+        direction: to * (1.0 / distance),
+        distance,
+        value: luminance / pdf,
+        pdf: Some(pdf),
+    })
 }
 
 /// Returns the sample of a sun without extent.
 fn sample_delta_sun(sun: &SunDisc) -> LightSample {
     LightSample { direction: sun.towards, distance: f32::INFINITY, value: sun.illuminance, pdf: None }
-}
-
-/// Returns true if a point is in front of a panel.
-fn is_in_front(point: Vec3, centre: Vec3, normal: Vec3) -> bool {
-    (point - centre).dot(normal) > 0.0
 }

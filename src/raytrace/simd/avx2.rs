@@ -36,10 +36,10 @@ impl Kernels for Avx2 {
     }
 
     #[inline(always)]
-    fn sobol_4d(index: u32, seeds: [u32; 2]) -> [[f32; 4]; 2] {
+    fn sobol_4d(indices: [u32; 2], seeds: [u32; 2]) -> [[f32; 4]; 2] {
         // SAFETY: `dispatch` uses this type only with the proof that the CPU supports AVX2, and no other code can name
         // it.
-        unsafe { sobol_4d(index, seeds) }
+        unsafe { sobol_4d(indices, seeds) }
     }
 }
 
@@ -201,12 +201,12 @@ fn intersect_segments(ray: &RibbonRay, segments: &SegmentPacket, t_max: f32) -> 
 
 #[inline]
 #[target_feature(enable = "avx2")]
-fn sobol_4d(index: u32, seeds: [u32; 2]) -> [[f32; 4]; 2] {
+fn sobol_4d(indices: [u32; 2], seeds: [u32; 2]) -> [[f32; 4]; 2] {
     let splat = |n: u32| _mm256_set1_epi32(n as i32);
     let times = |n, factor: u32| _mm256_mullo_epi32(n, splat(factor));
-    // Shuffle the index and look up the unscrambled points
-    let [low, high] = seeds.map(|seed| {
-        let shuffled = sobol::scramble(index.reverse_bits(), sobol::hash(seed ^ sobol::SHUFFLE)) >> 16;
+    // Shuffle the indices and look up the unscrambled points
+    let [low, high] = [0, 1].map(|k: usize| {
+        let shuffled = sobol::scramble(indices[k].reverse_bits(), sobol::hash(seeds[k] ^ sobol::SHUFFLE)) >> 16;
         let part = |i: usize| four(&sobol::NIBBLES[i][(shuffled >> (4 * i)) as usize % 16]);
         _mm_xor_si128(_mm_xor_si128(part(0), part(1)), _mm_xor_si128(part(2), part(3)))
     });

@@ -17,8 +17,8 @@ pub trait Kernels {
     /// Returns the nearest hit with 0 < t < `t_max` of a ray with eight strand segments.
     fn intersect_segments(ray: &RibbonRay, segments: &SegmentPacket, t_max: f32) -> Option<SegmentHit>;
 
-    /// Returns the first four dimensions of the Owen-scrambled Sobol point `index` (under 2^16) for each of two seeds.
-    fn sobol_4d(index: u32, seeds: [u32; 2]) -> [[f32; 4]; 2];
+    /// Returns the first four dimensions of two Owen-scrambled Sobol points, each of an index under 2^16 and a seed.
+    fn sobol_4d(indices: [u32; 2], seeds: [u32; 2]) -> [[f32; 4]; 2];
 }
 
 /// A computation that is compiled once for each set of kernels. `run` and every function it calls must be

@@ -105,7 +105,7 @@ impl Kernels for Scalar {
     }
 
     #[inline(always)]
-    fn sobol_4d(index: u32, seeds: [u32; 2]) -> [[f32; 4]; 2] {
-        seeds.map(|seed| sobol_burley::sample_4d(index, 0, seed))
+    fn sobol_4d(indices: [u32; 2], seeds: [u32; 2]) -> [[f32; 4]; 2] {
+        [0, 1].map(|i| sobol_burley::sample_4d(indices[i], 0, seeds[i]))
     }
 }

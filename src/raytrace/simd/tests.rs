@@ -73,7 +73,7 @@ fn no_ray_passes_between_adjacent_triangles() {
 }
 
 /// The Sobol kernel of this CPU.
-struct SobolPoint(u32, [u32; 2]);
+struct SobolPoint([u32; 2], [u32; 2]);
 
 impl KernelTask for SobolPoint {
     type Output = [[f32; 4]; 2];
@@ -88,8 +88,8 @@ impl KernelTask for SobolPoint {
 fn the_sobol_kernel_returns_the_bits_of_the_reference_library() {
     for index in (0..256_u32).chain((256..65_536).step_by(97)) {
         for seed in [0, 1, 0xffff_ffff, index.wrapping_mul(0x9e37_79b9)] {
-            let seeds = [seed, !seed];
-            assert_eq!(dispatch(SobolPoint(index, seeds)), Scalar::sobol_4d(index, seeds), "{index} {seed}");
+            let (indices, seeds) = ([index, index ^ 0x2b7], [seed, !seed]);
+            assert_eq!(dispatch(SobolPoint(indices, seeds)), Scalar::sobol_4d(indices, seeds), "{index} {seed}");
         }
     }
 }

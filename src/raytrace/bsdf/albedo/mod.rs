@@ -3,6 +3,7 @@
 mod facet_quadrature;
 
 use super::{fresnel, ggx};
+use crate::math::simd::LANES;
 use facet_quadrature::FacetQuadrature;
 use std::f64::consts::PI;
 
@@ -80,16 +81,40 @@ impl AlbedoTable {
     /// Returns the albedo for a cosine.
     #[inline]
     pub fn at(&self, cos: f32) -> f32 {
+        let (below, fraction) = self.entry_below(cos);
+        self.between_entries(below, fraction)
+    }
+
+    /// Returns the albedo for a cosine a lane.
+    #[inline(always)]
+    pub fn at_lanes(&self, cosines: &[f32; LANES]) -> [f32; LANES] {
+        // Find the entries of all lanes before the first look-up, in loops that vectorize
+        let (mut below, mut fractions) = ([0; LANES], [0.0; LANES]);
+        for (i, cos) in cosines.iter().enumerate() {
+            (below[i], fractions[i]) = self.entry_below(*cos);
+        }
+        std::array::from_fn(|i| self.between_entries(below[i], fractions[i]))
+    }
+
+    /// Returns the last entry before a cosine, and how near to the next it is, 0 to 1.
+    #[inline(always)]
+    fn entry_below(&self, cos: f32) -> (i32, f32) {
         let x = self.spacing.coordinate(cos) * (ENTRIES - 1) as f32;
-        let i = (x as usize).min(ENTRIES - 2);
-        let fraction = x - i as f32;
+        let i = (x as i32).min(ENTRIES as i32 - 2);
+        (i, x - i as f32)
+    }
+
+    /// Returns the albedo between two entries.
+    #[inline(always)]
+    fn between_entries(&self, i: i32, fraction: f32) -> f32 {
+        let i = i as usize;
         self.entries[i] + (self.entries[i + 1] - self.entries[i]) * fraction
     }
 }
 
 impl Spacing {
     /// Returns the coordinate of a cosine, both in 0..1.
-    #[inline]
+    #[inline(always)]
     fn coordinate(self, cos: f32) -> f32 {
         let root = cos.clamp(0.0, 1.0).sqrt();
         root * (1.0 + self.b) / (root + self.b)
