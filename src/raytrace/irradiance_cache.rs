@@ -19,8 +19,9 @@
 
 use super::bsdf::Bsdf;
 use super::geometry::SurfaceInteraction;
+use crate::math::approx;
 use glam::{IVec3, Vec3};
-use std::collections::HashMap;
+use rustc_hash::FxHashMap;
 
 /// Least width of a path's sample, where it meets the surface, in cells.
 const MIN_FOOTPRINT_CELLS: f32 = 3.0;
@@ -35,9 +36,9 @@ impl CellKey {
     /// Returns the key of the cell of a level that a surface is in, for largest cells of this size.
     pub fn of(surface: &SurfaceInteraction, largest_cell_m: f32, CellLevel(level): CellLevel) -> Self {
         let cell_m = CellLevel(level).cell_m(largest_cell_m);
-        let IVec3 { x, y, z } = (surface.position / cell_m).floor().as_ivec3();
+        let [x, y, z] = (surface.position / cell_m).to_array().map(floor);
         // One of 26 directions: to the faces, edges and corners of a cube
-        let normal = (1.5 * surface.normal).round().as_ivec3();
+        let normal = IVec3::from(surface.normal.to_array().map(|part| approx::round(1.5 * part) as i32));
         CellKey([x, y, z, normal.dot(IVec3::new(1, 4, 16)), surface.material.cast_signed(), level])
     }
 
@@ -48,13 +49,19 @@ impl CellKey {
     }
 }
 
+/// Returns the largest whole number up to a number: the standard library's is a call on CPUs without SSE 4.1.
+fn floor(x: f32) -> i32 {
+    let whole = x as i32;
+    whole - i32::from(x < whole as f32)
+}
+
 /// The light of each cell in a pass.
 #[derive(Debug)]
 pub struct IrradianceCache {
     /// Size of the largest cells, metres.
     pub largest_cell_m: f32,
     /// Radiance of a white diffuse base, film layer by film layer.
-    pub cells: HashMap<CellKey, Vec<Vec3>>,
+    pub cells: FxHashMap<CellKey, Vec<Vec3>>,
 }
 
 /// The light of a cell towards a path.
@@ -75,7 +82,7 @@ pub struct CellLevel(i32);
 impl CellLevel {
     /// Returns the size of the level's cells, metres, of the largest cells'.
     pub fn cell_m(self, largest_cell_m: f32) -> f32 {
-        largest_cell_m * (-self.0 as f32).exp2()
+        largest_cell_m / (1 << self.0) as f32
     }
 }
 
@@ -91,8 +98,15 @@ impl Footprint {
 
     /// Returns the level of the largest cells that are narrow enough, if there are such.
     pub fn level(self, largest_cell_m: f32) -> Option<CellLevel> {
-        let halvings = (MIN_FOOTPRINT_CELLS * largest_cell_m / self.0.sqrt()).log2().ceil().max(0.0);
-        (halvings <= MAX_LEVEL as f32).then_some(CellLevel(halvings as i32))
+        // Each halving of the width is a quarter of the area
+        let mut area = (MIN_FOOTPRINT_CELLS * largest_cell_m).powi(2);
+        for level in 0..=MAX_LEVEL {
+            if area <= self.0 {
+                return Some(CellLevel(level));
+            }
+            area *= 0.25;
+        }
+        None
     }
 }
 
