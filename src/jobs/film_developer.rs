@@ -27,7 +27,7 @@ pub struct Developed<I> {
     /// Samples per pixel.
     pub spp: u32,
     /// Name of the method, for the picture's file.
-    pub method: &'static str,
+    pub method: String,
     /// Time that its development took.
     pub took: Duration,
     /// When it was developed.
@@ -279,7 +279,7 @@ mod tests {
             denoiser: None,
             image: (),
             spp: 1,
-            method: "path",
+            method: "path".to_owned(),
             took: Duration::from_secs(1),
             at: Instant::now(),
         };

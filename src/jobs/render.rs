@@ -115,7 +115,7 @@ pub fn render(
     let trace_started = Instant::now();
     monitor.start_tracing(trace_started);
     let film = match input.checkpoint {
-        None => raytrace::empty_film(&scene, settings),
+        None => pool.install(|| raytrace::empty_film(&scene, settings)),
         Some(bytes) => stored_film(input, bytes, &mut scene, pool)?,
     };
     let coarse = settings.coarse().filter(|_| !control.is_cancelled() && film.spp() == 0);

@@ -15,7 +15,7 @@ pub struct RenderedPart {
     /// The sums; of fewer samples if the render was cancelled.
     pub part: FilmPart,
     /// Name of the method, for the picture's file.
-    pub method: &'static str,
+    pub method: String,
     /// Caustics come from photons.
     pub has_photons: bool,
     /// Time to build BVHs and tables, seconds.
@@ -43,7 +43,7 @@ pub fn render_part(
     let part = pool
         .install(|| raytrace::render_part(&scene, input.scene, input.settings, range, monitor.control(), after_sample));
     monitor.finish();
-    let film = raytrace::empty_film(&scene, input.settings);
-    let (method, has_photons) = (film.method(), film.has_photons());
+    let film = pool.install(|| raytrace::empty_film(&scene, input.settings));
+    let (method, has_photons) = (film.method(), film.approximations().photons);
     Ok(RenderedPart { scene, part, method, has_photons, build_s, trace_s: trace_started.elapsed().as_secs_f64() })
 }

@@ -185,11 +185,13 @@ impl IrradianceCache {
         let gather = |tracer: &mut PathTracer<'_>, (key, points): &(CellKey, Vec<CachePoint>)| {
             let mut light = vec![Vec3::ZERO; scene.layers.len()];
             let (x, y) = key.seeds();
+            let rays = tracer.caster.rays;
             for index in paths.clone().take_while(|_| !control.is_cancelled()) {
                 let sampler = Sampler::new(x, y, index, seed ^ SEED);
                 let point = &points[index as usize % points.len()];
                 tracer.trace_from_cell(point, &sampler, limits, &mut LayerSums(&mut light));
             }
+            control.count(tracer.caster.rays - rays, 0);
             light.iter_mut().for_each(|sum| *sum /= paths.len() as f32);
             // Paths that come to a cell without finite light find, discard and count what is not finite
             light.iter().all(|sum| sum.is_finite()).then_some((*key, light))

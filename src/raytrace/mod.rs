@@ -15,6 +15,7 @@
 
 mod aggregate;
 mod approximated_vertex;
+mod approximations;
 mod blas;
 mod bsdf;
 mod bvh;
@@ -80,6 +81,7 @@ mod voxels;
 mod wavefront;
 mod whitted;
 
+pub use approximations::Approximations;
 pub use control::RenderControl;
 pub use events::{Lobe, PathEnd, PathEvent, PathVertex};
 pub use exact_sum::ExactSum;

@@ -1,6 +1,7 @@
 //! Sample passes: progressive rendering in passes of 1, 1, 2, 4 ... samples per pixel, each with its own photons and its
 //! own cache of bounced light and its own blur.
 
+use super::approximations::Approximations;
 use super::caustics::{CausticView, MIN_PHOTONS, PhotonMap, PhotonPass};
 use super::control::RenderControl;
 use super::irradiance_cache::IrradianceCache;
@@ -48,9 +49,17 @@ pub fn uses_photons(scene: &RenderScene, settings: &Settings) -> bool {
     scene.plan().photons && settings.method != Method::Whitted
 }
 
-/// Returns true if a render may approximate bounced light: paths of the plan's own depth, at one time.
-fn may_approximate(scene: &RenderScene, settings: &Settings) -> bool {
-    settings.method == Method::Path && settings.max_depth.is_none() && scene.moments.is_empty()
+/// Returns how a render approximates light: with photons, and, for paths of the plan's own depth at one time, with a
+/// cache where it pays and with regularisation.
+pub fn approximations(scene: &RenderScene, settings: &Settings) -> Approximations {
+    let may_approximate = settings.method == Method::Path && settings.max_depth.is_none() && scene.moments.is_empty();
+    let may_be_cached = may_approximate && scene.plan().irradiance_cache;
+    Approximations {
+        photons: uses_photons(scene, settings),
+        irradiance_cache: may_be_cached
+            && irradiance_gather::pays(scene, &scene.lens.film_camera(settings.width, settings.height)),
+        regularisation: may_approximate && scene.plan().regularisation,
+    }
 }
 
 /// What the samples of a pass share: photons of caustics, the cache of bounced light, and materials with blurred gloss.
@@ -82,26 +91,23 @@ pub struct SharedLightTracer<'a> {
     /// Visible surfaces and density of starts. None for a render without photons.
     view: Option<Arc<CausticView>>,
     camera: FilmCamera,
-    /// There is a cache of bounced light.
-    is_cached: bool,
-    /// Paths are regularised.
-    is_regularised: bool,
+    approximations: Approximations,
 }
 
 impl<'a> SharedLightTracer<'a> {
-    /// Learns where photons start, if the render has any, and whether a cache pays. Of no use if `control` is
-    /// cancelled.
-    pub fn new(scene: &'a RenderScene, settings: &'a Settings, control: &RenderControl) -> Self {
+    /// Learns where photons start, if the render has any. Of no use if `control` is cancelled.
+    pub fn new(
+        scene: &'a RenderScene,
+        settings: &'a Settings,
+        approximations: Approximations,
+        control: &RenderControl,
+    ) -> Self {
         let camera = scene.lens.film_camera(settings.width, settings.height);
-        let view = uses_photons(scene, settings).then(|| {
+        let view = approximations.photons.then(|| {
             let photons = settings.pixels() * u64::from(settings.spp);
             Arc::new(CausticView::learn(scene, &camera, photons, settings.seed, control))
         });
-        let may_approximate = may_approximate(scene, settings);
-        let may_be_cached = may_approximate && scene.plan().irradiance_cache;
-        let is_cached = may_be_cached && irradiance_gather::pays(scene, &camera);
-        let is_regularised = may_approximate && scene.plan().regularisation;
-        SharedLightTracer { scene, settings, view, camera, is_cached, is_regularised }
+        SharedLightTracer { scene, settings, view, camera, approximations }
     }
 
     /// Traces the shared light of a pass. Incomplete if `control` is cancelled.
@@ -112,8 +118,8 @@ impl<'a> SharedLightTracer<'a> {
         let photon_pass = PhotonPass { first_sample, samples, photons, seed };
         let photon_map = self.view.as_ref().map(|view| PhotonMap::trace(scene, &photon_pass, view, control));
         let cached = || IrradianceCache::trace(scene, &self.camera, photon_map.as_ref(), pass, seed, control);
-        let irradiance_cache = self.is_cached.then(cached);
-        let blurred_materials = self.is_regularised.then(|| BlurredMaterials::new(scene, pass));
+        let irradiance_cache = self.approximations.irradiance_cache.then(cached);
+        let blurred_materials = self.approximations.regularisation.then(|| BlurredMaterials::new(scene, pass));
         SharedLight { photon_map, irradiance_cache, blurred_materials }
     }
 }

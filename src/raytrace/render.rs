@@ -17,7 +17,7 @@ use std::sync::Arc;
 
 /// Returns the film of a render before its first sample.
 pub fn empty_film(scene: &RenderScene, settings: &Settings) -> Film {
-    Film::new(settings, scene.layers.clone(), passes::uses_photons(scene, settings))
+    Film::new(settings, scene.layers.clone(), passes::approximations(scene, settings))
 }
 
 /// Renders on rayon's current pool. After each pass `on_pass` receives the film and may end the render; a clone of the
@@ -41,7 +41,7 @@ pub fn resume(
     on_pass: &mut dyn FnMut(&Film) -> ControlFlow<()>,
 ) -> Film {
     let camera = scene.lens.film_camera(settings.width, settings.height);
-    let light_tracer = SharedLightTracer::new(scene, settings, control);
+    let light_tracer = SharedLightTracer::new(scene, settings, film.approximations(), control);
     let target = NoiseTarget::of(settings);
     // Each pass adds samples to the noisiest tile.
     let taken = film.most_spp();

@@ -27,8 +27,9 @@ pub fn render_part(
     on_sample: &mut dyn FnMut(&FilmPart),
 ) -> FilmPart {
     let camera = scene.lens.film_camera(settings.width, settings.height);
-    let mut part = FilmPart::new(&empty_film(scene, settings), studio, settings.aovs);
-    let light_tracer = SharedLightTracer::new(scene, settings, control);
+    let empty = empty_film(scene, settings);
+    let mut part = FilmPart::new(&empty, studio, settings.aovs);
+    let light_tracer = SharedLightTracer::new(scene, settings, empty.approximations(), control);
     for pass in PassSchedule::new(scene, settings).passes() {
         let (first, end) = (pass.first_sample.max(range.start), (pass.first_sample + pass.samples).min(range.end));
         if first >= end {
@@ -39,7 +40,7 @@ pub fn render_part(
         for index in first..end {
             let pass = SamplePass { first_sample: index, samples: 1 };
             let job = TileJob { scene, shared_light, camera: &camera, settings, control, pass };
-            let mut sample = empty_film(scene, settings);
+            let mut sample = empty.clone();
             let tiles = sample.tiles_mut();
             if !tiles.par_iter_mut().with_max_len(1).all(|tile| job.run(Arc::make_mut(tile))) {
                 return part;
@@ -99,7 +100,7 @@ mod tests {
         let prepared = prepare(&scene, &Assets::default()).unwrap();
         let settings = Settings { width: 70, height: 40, spp: 13, aovs: true, seed: 5, ..Settings::default() };
         let film: Film = render(&prepared, &settings, &RenderControl::new(), &mut |_| ControlFlow::Continue(()));
-        assert!(film.has_photons());
+        assert!(film.approximations().photons);
         let whole = part(&prepared, &scene, &settings, 0..13);
         for cuts in [vec![0, 6, 13], vec![0, 1, 3, 4, 11, 12, 13]] {
             let mut parts: Vec<FilmPart> =

@@ -5,7 +5,7 @@ use super::events::PathEvent;
 use super::film::{Layer, NonFiniteGate, NonFiniteReport};
 use super::lens::FilmCamera;
 use super::limits::PathLimits;
-use super::passes::{PassSchedule, SharedLight, SharedLightTracer};
+use super::passes::{self, PassSchedule, SharedLight, SharedLightTracer};
 use super::pixel_sampler::PixelSampler;
 use super::render_scene::RenderScene;
 use super::sample_pass::SamplePass;
@@ -46,17 +46,23 @@ pub fn replay(scene: &RenderScene, settings: &Settings, (x, y): (u32, u32), inde
     let mut nonfinite = NonFiniteReport::default();
     let gate = NonFiniteGate { sink: SampleSums::new(scene), sample, report: &mut nonfinite };
     let mut recorder = Recorder { gate, origin: scene.origin, events: Vec::new() };
-    let light_tracer = SharedLightTracer::new(scene, settings, &RenderControl::new());
+    let light_tracer = light_tracer(scene, settings);
     PassReplay::new(scene, settings, &light_tracer, pass).trace(sample, &mut recorder);
     let Recorder { gate, events, .. } = recorder;
     let sums = gate.sink.sums;
     Some(Replay { sample, events, sums, nonfinite })
 }
 
+/// Returns the tracer of a render's shared light.
+fn light_tracer<'a>(scene: &'a RenderScene, settings: &'a Settings) -> SharedLightTracer<'a> {
+    let approximations = passes::approximations(scene, settings);
+    SharedLightTracer::new(scene, settings, approximations, &RenderControl::new())
+}
+
 /// Index of the brightest sample of a pixel; of the first with a non-finite contribution, if there is one.
 pub fn brightest_sample(scene: &RenderScene, settings: &Settings, (x, y): (u32, u32)) -> u32 {
     let mut brightest = (0, f32::NEG_INFINITY);
-    let light_tracer = SharedLightTracer::new(scene, settings, &RenderControl::new());
+    let light_tracer = light_tracer(scene, settings);
     for pass in PassSchedule::new(scene, settings).passes() {
         let replay = PassReplay::new(scene, settings, &light_tracer, pass);
         for index in pass.first_sample..pass.first_sample + pass.samples {

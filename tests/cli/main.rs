@@ -107,22 +107,51 @@ fn exr_holds_scene_linear_values_and_attributes_of_the_render() {
     }
 }
 
+/// A room of white walls, lit by a panel.
+const WHITE_ROOM: &str = r#"(
+    format: 1,
+    name: "White room",
+    camera: (
+        position: (0.0, 1.5, 2.0), aim: Point(0.0, 1.2, -1.0), sensor: FullFrame, orientation: Landscape,
+        focal_length_mm: 24.0, f_number: 4.0, shutter_s: 0.01, iso: 100.0, white_balance_k: 5600.0,
+    ),
+    room: Some((
+        size_m: (4.0, 3.0, 5.0),
+        floor: Custom(base_color: (0.8, 0.8, 0.8), roughness: 1.0),
+        walls: Custom(base_color: (0.8, 0.8, 0.8), roughness: 1.0),
+        ceiling: Custom(base_color: (0.8, 0.8, 0.8), roughness: 1.0),
+    )),
+    objects: [],
+    lights: [(
+        name: "Key", role: Key, position: (0.0, 2.9, -0.5), aim: Point(0.0, 0.0, -0.5),
+        emitter: RectPanel(width_m: 0.9, height_m: 0.9), power: (output: Lumens(12000.0), dial_stops: 0.0),
+        color: Kelvin(5600.0),
+    )],
+)"#;
+
 #[test]
-fn the_exr_method_and_the_report_name_photons_where_caustics_come_from_them() {
+fn the_exr_method_names_how_light_was_approximated_and_the_report_photons() {
     let folder = tempfile::tempdir().unwrap();
-    let render = |studio: &str, caustics: &str| {
-        let arguments =
-            ["render", studio, "-o", "a.exr", "--size", "24x16", "--spp", "1", "--json", "--caustics", caustics];
+    let render = |studio: &str, options: &[&str]| {
+        let arguments = ["render", studio, "-o", "a.exr", "--size", "24x16", "--spp", "1", "--json"];
+        let arguments = [&arguments, options].concat();
         let output = catchlight(folder.path(), &arguments);
         let report: Value = serde_json::from_str(stdout(&output).trim()).unwrap();
         let file = std::fs::read(folder.path().join("a.exr")).unwrap();
         let header = String::from_utf8_lossy(&file[..4000.min(file.len())]).into_owned();
-        (report["photons"].as_bool().unwrap(), header.contains("path, caustics from photons"))
+        let text = ["caustics from photons", "blurred gloss after a bounce", "bounced light from a cache"];
+        (report["photons"].as_bool().unwrap(), text.map(|text| header.contains(text)))
     };
-    assert_eq!(render("product_still_life", "photons"), (true, true));
-    assert_eq!(render("product_still_life", "paths"), (false, false));
-    // This studio has neither glass nor mirrors.
-    assert_eq!(render("rembrandt", "photons"), (false, false));
+    let plain = ["--caustics", "paths", "--bounced-light", "paths"];
+    assert_eq!(render("product_still_life", &["--caustics", "photons"]), (true, [true, true, false]));
+    assert_eq!(render("product_still_life", &plain[..2]), (false, [false, true, false]));
+    assert_eq!(render("product_still_life", &plain), (false, [false; 3]));
+    // This studio has neither glass nor mirrors, and a person.
+    assert_eq!(render("rembrandt", &[]), (false, [false; 3]));
+    // The walls of this room are white.
+    std::fs::write(folder.path().join("room.ron"), WHITE_ROOM).unwrap();
+    assert_eq!(render("room.ron", &[]), (false, [false, false, true]));
+    assert_eq!(render("room.ron", &plain), (false, [false; 3]));
 }
 
 #[test]

@@ -86,7 +86,7 @@ pub fn run(arguments: &Arguments, started: Instant) -> Result<(), Failure> {
         first_wave_s: seconds(monitor.first_pass()),
         rays,
         mrays_s: rays as f64 / rendered.trace_s.max(1e-9) / 1e6,
-        photons: film.has_photons(),
+        photons: film.approximations().photons,
         noise_stops: Some(film.noise_stops()).filter(|n| n.is_finite()),
         nonfinite: nonfinite.count,
         interrupted,
@@ -249,7 +249,7 @@ fn write(arguments: &Arguments, loaded: &Loaded, film: &Film, settings: &Setting
         layers: if arguments.layers { film.lazy_layers(&loaded.scene) } else { Vec::new() },
         denoiser_aovs: film.denoiser_aovs(),
         aovs: film.aovs().filter(|_| arguments.aovs),
-        info: PictureInfo::new(&loaded.scene, film.method(), film.spp(), arguments.seed.into()),
+        info: PictureInfo::new(&loaded.scene, &film.method(), film.spp(), arguments.seed.into()),
     };
     output.write(arguments.denoise)
 }

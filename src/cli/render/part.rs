@@ -96,7 +96,7 @@ impl PartRender<'_> {
             studio: scene.title(),
             samples: first..first + sums.samples,
             of: self.settings.spp,
-            info: PictureInfo::new(scene, rendered.method, sums.samples, self.arguments.seed.into()),
+            info: PictureInfo::new(scene, &rendered.method, sums.samples, self.arguments.seed.into()),
             sums,
         }
     }

@@ -345,7 +345,7 @@ mod tests {
         let document = Document::new(Scene::default(), Assets::default(), None);
         let picture = || {
             let settings = Settings { width: 8, height: 8, ..Settings::default() };
-            let film = Arc::new(Film::new(&settings, vec![Layer::shared("Glow")], false));
+            let film = Arc::new(Film::new(&settings, vec![Layer::shared("Glow")], Default::default()));
             KeptPicture { film, scene: Arc::default(), settings, is_complete: false }
         };
         let mut recovery = Recovery::new(Some(folder.path().to_owned()));

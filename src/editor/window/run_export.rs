@@ -31,7 +31,7 @@ impl App {
             picture: developed.picture.clone(),
             denoised_from: developed.noisy.clone().zip(developed.denoiser),
             film: developed.film.upgrade(),
-            info: PictureInfo::new(&scene, developed.method, developed.spp, seed),
+            info: PictureInfo::new(&scene, &developed.method, developed.spp, seed),
             scene,
         };
         let film = developed.film.clone();

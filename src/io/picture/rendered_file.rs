@@ -7,7 +7,7 @@ use crate::io::error::{Problem, reason};
 use crate::io::kept_picture::KeptPicture;
 use crate::io::scene_file::parse_scene;
 use crate::photo::{AovPicture, Picture};
-use crate::raytrace::{Film, Layer, Method, Settings};
+use crate::raytrace::{Approximations, Film, Layer, Method, Settings};
 use crate::scene::{Finding, Light, Role, Scene};
 use exr::prelude::FlatSamples;
 use std::path::Path;
@@ -52,8 +52,8 @@ fn decode(content: &[u8]) -> Result<RenderedPicture, String> {
     if layers.is_empty() {
         layers.push((Layer::shared("Picture"), picture(whole, &settings)?));
     }
-    let photons = info.method.contains("photons");
-    let film = Arc::new(Film::from_layers(&settings, photons, &scene, &layers, aovs.as_ref()));
+    let approximations = Approximations::named_in(&info.method);
+    let film = Arc::new(Film::from_layers(&settings, approximations, &scene, &layers, aovs.as_ref()));
     let picture = KeptPicture { film, scene: Arc::new(scene), settings, is_complete: true };
     Ok(RenderedPicture { picture, findings })
 }
@@ -130,7 +130,7 @@ mod tests {
         let settings = Settings { width: 37, height: 21, spp: 4, aovs: true, ..Settings::default() };
         let film = render(&prepared, &settings, &RenderControl::new(), &mut |_| ControlFlow::Continue(()));
         let (picture, layers, aovs) = (film.develop(&loaded.scene), film.lazy_layers(&loaded.scene), film.aovs());
-        let info = PictureInfo::new(&loaded.scene, film.method(), film.spp(), 7);
+        let info = PictureInfo::new(&loaded.scene, &film.method(), film.spp(), 7);
         let shown = LayeredPicture { picture: &picture, layers: &layers };
         let bytes = picture_file(Path::new("a.exr"), shown, None, aovs.as_ref(), &info).unwrap().bytes();
         drop(layers);

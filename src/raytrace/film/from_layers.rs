@@ -2,6 +2,7 @@
 
 use super::{Film, Layer};
 use crate::photo::{AovPicture, Picture};
+use crate::raytrace::approximations::Approximations;
 use crate::raytrace::settings::Settings;
 use crate::scene::Scene;
 use glam::Vec3;
@@ -15,7 +16,7 @@ impl Film {
     /// If a picture has another size than the settings.
     pub fn from_layers(
         settings: &Settings,
-        photons: bool,
+        approximations: Approximations,
         scene: &Scene,
         layers: &[(Layer, Picture)],
         aovs: Option<&AovPicture>,
@@ -26,7 +27,7 @@ impl Film {
             kinds.push(Layer::shared("Glow"));
         }
         let settings = Settings { aovs: aovs.is_some(), ..settings.clone() };
-        let mut film = Film::new(&settings, kinds, photons);
+        let mut film = Film::new(&settings, kinds, approximations);
         let (samples, width) = (settings.spp.max(1) as f32, settings.width as usize);
         let per_weight = |weight: f32| if weight > 0.0 { samples / weight } else { 0.0 };
         let scales: Vec<Vec3> = film.weights(scene).into_iter().map(|weight| weight.map(per_weight)).collect();

@@ -17,6 +17,7 @@ pub use noise::{MIN_ESTIMATE_SPP, MIN_ROUGH_ESTIMATE_SPP, SampleBlocks};
 pub use sums::LayerSums;
 pub use tile::{FilmTile, TILE};
 
+use super::approximations::Approximations;
 use super::settings::{Method, Settings};
 use crate::photo::{AovPicture, LazyPicture, Picture, exposure};
 use crate::scene::Scene;
@@ -34,14 +35,14 @@ pub struct Film {
     height: u32,
     layers: Vec<Layer>,
     method: Method,
-    photons: bool,
+    approximations: Approximations,
     /// Rows of tiles from the top.
     tiles: Vec<Arc<FilmTile>>,
 }
 
 impl Film {
-    /// An empty film for a render, with caustics from photons or without.
-    pub fn new(settings: &Settings, layers: Vec<Layer>, photons: bool) -> Self {
+    /// An empty film for a render with these approximations.
+    pub fn new(settings: &Settings, layers: Vec<Layer>, approximations: Approximations) -> Self {
         let Settings { width, height, method, aovs, .. } = *settings;
         let mut tiles = Vec::new();
         for y in (0..height).step_by(TILE as usize) {
@@ -50,7 +51,7 @@ impl Film {
                 tiles.push(Arc::new(FilmTile::new((x, y), (tile_width, tile_height), layers.len(), aovs)));
             }
         }
-        Film { width, height, layers, method, photons, tiles }
+        Film { width, height, layers, method, approximations, tiles }
     }
 
     /// Returns the memory of a film with so many layers, bytes.
@@ -94,20 +95,18 @@ impl Film {
         self.height
     }
 
-    /// Name of the method, for the picture's file.
-    pub fn method(&self) -> &'static str {
-        match (self.method, self.photons) {
-            (Method::Whitted, _) => "whitted",
-            (Method::Direct, false) => "direct",
-            (Method::Direct, true) => "direct, caustics from photons",
-            (Method::Path, false) => "path",
-            (Method::Path, true) => "path, caustics from photons",
-        }
+    /// Returns the name of the method with its approximations, for the picture's file.
+    pub fn method(&self) -> String {
+        self.approximations.describe(match self.method {
+            Method::Whitted => "whitted",
+            Method::Direct => "direct",
+            Method::Path => "path",
+        })
     }
 
-    /// Returns true if caustics come from photons.
-    pub fn has_photons(&self) -> bool {
-        self.photons
+    /// Returns how light was approximated.
+    pub fn approximations(&self) -> Approximations {
+        self.approximations
     }
 
     /// Samples that every pixel has. Some have more after adaptive sampling or an interrupted pass.
