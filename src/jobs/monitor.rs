@@ -108,6 +108,11 @@ impl RenderMonitor {
         locked(&self.stages).first_pass
     }
 
+    /// Returns the rays so far, without those of the coarse picture.
+    pub(super) fn rays(&self) -> u64 {
+        self.control.rays().saturating_sub(locked(&self.stages).coarse_rays)
+    }
+
     pub(super) fn start_tracing(&self, now: Instant) {
         locked(&self.stages).tracing = Some(now);
     }
@@ -128,9 +133,8 @@ impl RenderMonitor {
 
     /// Takes the prediction of the rays that are still needed after a pass.
     pub(super) fn predict_rays_left(&self, left: u64) {
-        let mut stages = locked(&self.stages);
-        let done = self.control.rays().saturating_sub(stages.coarse_rays);
-        stages.predicted_rays = Some(done + left);
+        let total = self.rays() + left;
+        locked(&self.stages).predicted_rays = Some(total);
     }
 
     pub(super) fn finish(&self) {

@@ -130,7 +130,7 @@ pub fn render(
         within_time(input.time_limit, trace_started, control, |deadline| {
             raytrace::resume(&scene, settings, film, control, &mut |film| {
                 monitor.finish_pass();
-                if let Some(left) = raytrace::predicted_rays_left(film, &scene, settings) {
+                if let Some(left) = raytrace::predicted_rays_left(film, &scene, settings, monitor.rays()) {
                     monitor.predict_rays_left(left);
                 }
                 observe(RenderStage::Pass(film));

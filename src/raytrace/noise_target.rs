@@ -63,17 +63,23 @@ impl NoiseTarget {
     }
 }
 
-/// Predicts the rays that a render still needs to bring each tile below its noise limit. None for a render of a fixed
+/// Predicts the rays that a render still needs to bring each tile below its noise limit, after so many rays of its tiles
+/// and of what they share: photons and the cache, as many for each sample of the picture. None for a render of a fixed
 /// number of samples, and before every tile has [`MIN_ROUGH_ESTIMATE_SPP`] samples.
-pub fn predicted_rays_left(film: &Film, scene: &RenderScene, settings: &Settings) -> Option<u64> {
+pub fn predicted_rays_left(film: &Film, scene: &RenderScene, settings: &Settings, rays: u64) -> Option<u64> {
     let target = NoiseTarget::of(settings).filter(|_| film.spp() >= MIN_ROUGH_ESTIMATE_SPP)?;
     let schedule = PassSchedule::new(scene, settings);
-    let left = |tile: &FilmTile| {
-        let samples = u64::from(target.predicted_spp(tile, &schedule) - tile.spp()) * tile.pixels() as u64;
-        let rays_per_sample = tile.rays as f64 / tile.traced_samples.max(1) as f64;
-        samples as f64 * rays_per_sample
-    };
-    Some(film.tiles().iter().map(|tile| left(tile)).sum::<f64>() as u64)
+    let (mut left, mut of_tiles, mut last_spp) = (0.0, 0, 0);
+    for tile in film.tiles() {
+        let spp = target.predicted_spp(tile, &schedule);
+        let samples = u64::from(spp - tile.spp()) * tile.pixels() as u64;
+        left += samples as f64 * tile.rays as f64 / tile.traced_samples.max(1) as f64;
+        (of_tiles, last_spp) = (of_tiles + tile.rays, last_spp.max(spp));
+    }
+    let shared = rays.saturating_sub(of_tiles) as f64;
+    let most_spp = film.most_spp();
+    left += shared * f64::from(last_spp - most_spp) / f64::from(most_spp.max(1));
+    Some(left as u64)
 }
 
 #[cfg(test)]
@@ -94,7 +100,7 @@ mod tests {
         let control = RenderControl::new();
         let mut passes = Vec::new();
         let film = render(&prepared, &settings, &control, &mut |film| {
-            passes.push((control.rays(), predicted_rays_left(film, &prepared, &settings)));
+            passes.push((control.rays(), predicted_rays_left(film, &prepared, &settings, control.rays())));
             ControlFlow::Continue(())
         });
         (film, passes)
