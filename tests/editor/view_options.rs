@@ -37,7 +37,12 @@ fn assert_restored(window: &mut Window, before: &RgbaImage, name: &str) {
         for (kind, image) in [("before", before), ("after", &after)] {
             image.save(folder.join(format!("editor_{name}_{kind}.png"))).unwrap();
         }
-        panic!("{name}: {difference} codes; see {}/editor_{name}_*.png", folder.display());
+        let preview = &window.state().viewport().preview;
+        let state = (preview.failure(), preview.is_draft(), preview.has_bounced_light());
+        panic!(
+            "{name}: {difference} codes; see {}/editor_{name}_*.png; failure, draft, bounced light: {state:?}",
+            folder.display()
+        );
     }
 }
 
