@@ -2,6 +2,10 @@
 
 use crate::preview::PreviewError;
 use eframe::wgpu;
+use std::time::Duration;
+
+/// Time after the end of its work in which a device reports it. A lost device drops the report, and nothing waits.
+const LONGEST_CALLBACK: Duration = Duration::from_secs(5);
 
 /// Reads a part of a texture back and waits for the device. Rows have `bytes_per_pixel` times width bytes, without
 /// padding.
@@ -28,7 +32,8 @@ pub(crate) fn read_back(
         let _ = sender.send(result);
     });
     device.poll(wgpu::PollType::wait_indefinitely()).map_err(|error| PreviewError::Driver(error.to_string()))?;
-    match receiver.try_recv() {
+    // Another thread that waits for the device may be the one that calls back, a moment later
+    match receiver.recv_timeout(LONGEST_CALLBACK) {
         Ok(Ok(())) => {}
         _ => return Err(PreviewError::Driver("the picture could not be read back".to_owned())),
     }
