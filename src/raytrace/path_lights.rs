@@ -17,6 +17,7 @@ use super::render_scene::RenderScene;
 use super::sampler::{self, Dimensions, Sampler};
 use super::sink::RadianceSink;
 use crate::color::luminance;
+use crate::math::find_interval;
 use crate::math::simd::LANES;
 use glam::{Vec2, Vec3};
 
@@ -171,34 +172,24 @@ fn light_numbers(lanes: &LightLanes, depth: u32, sampler: &Sampler, first_set: &
     numbers
 }
 
-/// Chooses one of a few candidates in proportion to their weights, by `u` in [0, 1). Returns it with its probability.
+/// Chooses one of [`LANES`] candidates at most in proportion to their weights, by `u` in [0, 1). Returns it with its probability.
 /// One whose weight is not finite is chosen, so that the film reports it.
 fn choose_in_proportion<T: Copy>(
     candidates: impl Iterator<Item = T>,
     weight: impl Fn(&T) -> f32,
     u: f32,
 ) -> Option<(T, f32)> {
-    let (mut weighted, mut count, mut total) = ([None; LANES], 0, 0.0);
-    for candidate in candidates {
+    let (mut kept, mut weights) = ([None; LANES], [0.0; LANES]);
+    for (index, candidate) in candidates.enumerate() {
         let weight = weight(&candidate);
         if !weight.is_finite() {
             return Some((candidate, 1.0));
         }
-        if weight > 0.0 {
-            weighted[count] = Some((candidate, weight));
-            (count, total) = (count + 1, total + weight);
-        }
+        (kept[index], weights[index]) = (Some(candidate), weight);
     }
-    let mut rest = u * total;
-    let mut chosen = None;
-    for (candidate, weight) in weighted.into_iter().flatten() {
-        chosen = Some((candidate, weight / total));
-        if rest < weight {
-            break;
-        }
-        rest -= weight;
-    }
-    chosen
+    let total: f32 = weights.iter().sum();
+    let (index, weight, _) = find_interval(&weights, u * total)?;
+    Some((kept[index]?, weight / total))
 }
 
 /// Samples of a few lights at a vertex, one a lane.

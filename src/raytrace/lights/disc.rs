@@ -62,7 +62,7 @@ impl Disc {
         height * height + lateral * lateral < 0.25 * self.radius * self.radius
     }
 
-    /// Samples a point of the disc, seen from `from`. Returns the way to it and the density of its direction, 1/sr; none
+    /// Samples a point of the disc, seen from `from`. Returns the vector to it and the density of its direction, 1/sr; none
     /// for rejected samples and for a disc seen edge-on.
     pub fn sample(&self, from: Vec3, u: Vec2) -> Option<(Vec3, f32)> {
         if self.is_near(from) {
@@ -76,7 +76,7 @@ impl Disc {
         (pdf > 0.0 && pdf.is_finite()).then_some((to, pdf))
     }
 
-    /// Returns the density of the direction of a way `to` a point of the disc, 1/sr.
+    /// Returns the density of the direction of the vector `to` a point of the disc, 1/sr.
     pub fn pdf(&self, from: Vec3, to: Vec3) -> f32 {
         if self.is_near(from) { self.bounding_square().seen_from(from).pdf(to) } else { self.area_pdf(to) }
     }

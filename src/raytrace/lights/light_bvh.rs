@@ -5,6 +5,7 @@
 
 use super::light_bounds::{LightBounds, LightBoundsPacket};
 use super::traced_light::TracedLight;
+use crate::math::find_interval;
 use crate::raytrace::simd::{self, KernelTask, Kernels, LANES};
 use glam::Vec3;
 
@@ -218,22 +219,6 @@ impl ChildImportances {
         let (lane, importance, rest) = find_interval(&self.lanes[packet], rest)?;
         Some((packet * LANES + lane, importance / self.total, rest / importance))
     }
-}
-
-/// Returns the interval that contains `position` if intervals of these lengths are laid end to end: its index, its
-/// length, and the position in it. Returns the last interval that is not empty if rounding puts the position beyond the
-/// end.
-#[inline]
-fn find_interval(lengths: &[f32], mut position: f32) -> Option<(usize, f32, f32)> {
-    let mut found = None;
-    for (index, &length) in lengths.iter().enumerate().filter(|(_, length)| **length > 0.0) {
-        found = Some((index, length, position.min(length)));
-        if position < length {
-            break;
-        }
-        position -= length;
-    }
-    found
 }
 
 /// The task of [`LightBvh::importances`].

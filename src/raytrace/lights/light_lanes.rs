@@ -23,11 +23,11 @@ pub struct LightLanes {
 pub struct LightSampleLanes {
     /// Unit directions towards the lights.
     pub direction: Vec3Lanes,
-    /// Metres.
+    /// Distances to the emitters, metres.
     distance: [f32; LANES],
     /// Luminance over pdf, or illuminance; 0 where no light arrives.
     value: [f32; LANES],
-    /// Densities; infinite for delta lights.
+    /// Densities, 1/sr; infinite for delta lights.
     pdf: [f32; LANES],
 }
 

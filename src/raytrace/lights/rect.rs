@@ -88,7 +88,7 @@ impl Rect {
         if seen.is_far() { seen } else { seen.with_solid_angle() }
     }
 
-    /// Samples a point uniformly by area, seen from `from`. Returns the way to it and the density of its direction, 1/sr.
+    /// Samples a point uniformly by area, seen from `from`. Returns the vector to it and the density of its direction, 1/sr.
     #[inline(always)]
     pub fn sample_by_area(&self, from: Vec3, u: Vec2) -> (Vec3, f32) {
         let offset = (2.0 * u - Vec2::ONE) * self.half;
@@ -96,7 +96,7 @@ impl Rect {
         (to, self.area_pdf(to))
     }
 
-    /// Returns the density of a direction that is sampled by area, for the way `to` its point, 1/sr.
+    /// Returns the density of a direction that is sampled by area, for the vector `to` its point, 1/sr.
     #[inline(always)]
     fn area_pdf(&self, to: Vec3) -> f32 {
         let distance2 = to.length_squared();
@@ -175,7 +175,7 @@ impl SphericalRect<'_> {
         self.solid_angle < MIN_SOLID_ANGLE
     }
 
-    /// Samples a point of the rectangle, seen from `from`. Returns the way to it and the density of its direction, 1/sr;
+    /// Samples a point of the rectangle, seen from `from`. Returns the vector to it and the density of its direction, 1/sr;
     /// none for a rectangle seen edge-on.
     #[inline(always)]
     pub fn sample(&self, from: Vec3, u: Vec2) -> Option<(Vec3, f32)> {
@@ -204,7 +204,7 @@ impl SphericalRect<'_> {
         (self.rect.right * x + self.rect.up * y + self.axis_z * self.z, 1.0 / self.solid_angle)
     }
 
-    /// Returns the density of the direction of a way `to` a point of the rectangle, 1/sr.
+    /// Returns the density of the direction of the vector `to` a point of the rectangle, 1/sr.
     pub fn pdf(&self, to: Vec3) -> f32 {
         if self.is_sampled_by_area() { self.rect.area_pdf(to) } else { 1.0 / self.solid_angle }
     }

@@ -308,14 +308,14 @@ impl TracedLight {
                     return None;
                 }
                 let (to, pdf) = rect.seen_from(point).sample(point, u)?;
-                sample_way(to, *luminance, pdf)
+                sample_area_light(to, *luminance, pdf)
             }
             LightSource::Disc { disc, luminance } => {
                 if (point - disc.centre).dot(disc.normal()) <= 0.0 {
                     return None;
                 }
                 let (to, pdf) = disc.sample(point, u)?;
-                sample_way(to, *luminance, pdf)
+                sample_area_light(to, *luminance, pdf)
             }
             LightSource::Sphere { sphere, luminance } => {
                 let (direction, distance, pdf) = sphere.sample(point, u)?;
@@ -391,8 +391,8 @@ fn sample_position(point: Vec3, position: Vec3, intensity: f32) -> Option<LightS
     (distance > 0.0 && value.is_finite()).then(|| LightSample { direction: to / distance, distance, value, pdf: None })
 }
 
-/// Returns the sample of a point on an area light, for the way to it.
-fn sample_way(to: Vec3, luminance: f32, pdf: f32) -> Option<LightSample> {
+/// Returns the sample of a point on an area light, for the vector to it.
+fn sample_area_light(to: Vec3, luminance: f32, pdf: f32) -> Option<LightSample> {
     let distance = to.length();
     (distance > 0.0).then(|| LightSample {
         direction: to * (1.0 / distance),
