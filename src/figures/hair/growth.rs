@@ -39,6 +39,12 @@ const CROSSING_M: f32 = 0.006;
 const CUT_SCATTER_M: f32 = 0.004;
 /// Least length of hair at the sides that hangs over the ears, metres.
 const LEAST_OVER_EARS_M: f32 = 0.05;
+/// Length of a strand that moves along with a point which keeps clear of an obstacle, to each side, metres.
+const MOVED_WITH_M: f32 = 0.1;
+/// Least way of such a point, metres: less bends no strand.
+const FAR_MOVE_M: f32 = 0.002;
+/// How often the bends of a guide are rounded.
+const ROUNDINGS: usize = 6;
 /// Segments of a guide.
 const STEPS: usize = 24;
 /// Segments of a strand: of a turn of its curls, at most, and the longest without curls, metres.
@@ -175,7 +181,7 @@ impl CombField<'_> {
                 points.push(position);
             }
         }
-        points
+        rounded(points)
     }
 
     /// Returns the side of the shoulders on which hair from a root falls: before the ears over the chest.
@@ -232,6 +238,18 @@ impl CombField<'_> {
             Comb::FromParting(_) => (wanted - outwards * lift).normalize_or(self.down),
         }
     }
+}
+
+/// Returns the points of a guide with its bends rounded: where it meets an obstacle it turns at once, and hair does not.
+fn rounded(mut points: Vec<Vec3>) -> Vec<Vec3> {
+    for _ in 0..ROUNDINGS {
+        let mut before = points[1];
+        for k in 2..points.len() - 1 {
+            let mean = (before + points[k] * 2.0 + points[k + 1]) * 0.25;
+            before = std::mem::replace(&mut points[k], mean);
+        }
+    }
+    points
 }
 
 /// The roots of guides, eight to a block: X, Y and Z of each, infinitely far where there are fewer.
@@ -331,8 +349,9 @@ fn follow(
     let spread = Vec3::new(random.bell(), random.bell(), random.bell()) * style.frizz * 0.05 * style.length_m[0];
     let offset = root.position - first.root.position;
     let side = field.shoulder_side(&first.root);
+    let mut beside = first.root.normal;
     let mut points = Vec::with_capacity(steps.len());
-    for (k, &StrandStep { along, gather }) in steps.iter().enumerate() {
+    for &StrandStep { along, gather } in steps {
         let at = along * shorter * STEPS as f32;
         let (low, t) = ((at as usize).min(STEPS - 1), at - (at as usize).min(STEPS - 1) as f32);
         // The mean shape of the guides, from this root, drawn towards the first guide
@@ -341,23 +360,53 @@ fn follow(
         let mut p = root.position + mean.lerp(shape(first), gather) - offset * gather * 0.8 + spread * along;
         if style.curl_m > 0.0 {
             let tangent = (first.points[low + 1] - first.points[low]).normalize_or(Vec3::NEG_Y);
+            // A direction beside the guide that bends with it and does not turn about it
+            beside = (beside - tangent * tangent.dot(beside)).normalize_or(tangent.any_orthonormal_vector());
             let length = at / STEPS as f32 * style.length_m[0];
             let turns = style.turns_per_m * length + phase;
             let (sin, cos) = sin_cos_turn(turns - turns as u32 as f32);
-            let aside = tangent.any_orthonormal_vector();
-            p += (aside * cos + tangent.cross(aside) * sin) * style.curl_m * (along * 4.0).min(1.0);
+            p += (beside * cos + tangent.cross(beside) * sin) * style.curl_m * (along * 4.0).min(1.0);
         }
-        // A guide's shape from another root may lead into the skin or the clothes, or before the face
-        let aside = |p| field.beside_face(p, &first.root);
-        let outside = |p| {
-            let p = aside(field.obstacles.above_head(aside(p), CLEARANCE_M));
-            field.obstacles.over_torso(p, OVER_CLOTHES_M, side)
-        };
-        let p = if k == 0 { p } else { outside(p) };
         points.push((p, style.radius_m * (1.0 - 0.7 * along * along)));
     }
+    // A guide's shape from another root may lead into the skin or the clothes, or before the face
+    let outside = |p| {
+        let above = field.obstacles.above_head(p, CLEARANCE_M);
+        let beside = field.beside_face(above, &first.root);
+        if beside == above { above } else { field.obstacles.above_head(beside, CLEARANCE_M) }
+    };
+    if move_smoothly(&mut points, &outside) {
+        points[1..].iter_mut().for_each(|(p, _)| *p = field.beside_face(outside(*p), &first.root));
+    }
+    move_smoothly(&mut points, &|p| field.obstacles.over_torso(p, OVER_CLOTHES_M, side));
     cut(&mut points, field.down, style.cut_m + CUT_SCATTER_M * random.bell());
     points
+}
+
+/// Moves the points of a strand behind its root to where `moved` wants them. Where that is far, those before and behind
+/// move along, less with the distance: the strand keeps clear of an obstacle in a curve and not in a step. Returns true
+/// if there is such a place.
+fn move_smoothly(points: &mut [(Vec3, f32)], moved: &dyn Fn(Vec3) -> Vec3) -> bool {
+    let wanted: Vec<Vec3> = points.iter().map(|(p, _)| moved(*p) - *p).collect();
+    let way = |k: usize| wanted.get(k).map_or(0.0, |offset| offset.length_squared());
+    let is_peak = |k: usize| way(k) > FAR_MOVE_M * FAR_MOVE_M && way(k) >= way(k - 1).max(way(k + 1));
+    let peaks: Vec<usize> = (1..wanted.len()).filter(|&k| is_peak(k)).collect();
+    let mut from_root = vec![0.0];
+    if !peaks.is_empty() {
+        for ends in points.windows(2) {
+            from_root.push(from_root[from_root.len() - 1] + ends[0].0.distance(ends[1].0));
+        }
+    }
+    for (k, (p, _)) in points.iter_mut().enumerate().skip(1) {
+        let along = |&peak: &usize| {
+            let reach = if peak > k { MOVED_WITH_M.min(from_root[peak]) } else { MOVED_WITH_M };
+            let t = (1.0 - (from_root[k] - from_root[peak]).abs() / reach).max(0.0);
+            wanted[peak] * (t * t * (3.0 - 2.0 * t))
+        };
+        let offsets = peaks.iter().map(along);
+        *p += offsets.fold(wanted[k], |a, b| if b.length_squared() > a.length_squared() { b } else { a });
+    }
+    !peaks.is_empty()
 }
 
 /// Ends a strand at the point where it falls below a level, metres under the eyes along `down`.

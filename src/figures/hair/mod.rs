@@ -96,6 +96,25 @@ mod tests {
     }
 
     #[test]
+    fn loose_hair_bends_in_curves() {
+        // One in ten strands of long hair had a corner: where it came to the neck, the clothes or the forehead, and where
+        // its wave turned over.
+        const CORNER_DEG: f32 = 75.0;
+        for ready in READY.iter().filter(|ready| ready.figure().hair != HairStyle::TiedBack) {
+            let figure = ready.figure();
+            let strands = build(&figure).fine.strands.with_parts(|part| part == "hair");
+            let has_corner = |index: usize| {
+                let points: Vec<Vec3> = strands.strand(index).iter().map(|point| point.position).collect();
+                let bend = |p: &[Vec3]| (p[1] - p[0]).angle_between(p[2] - p[1]).to_degrees();
+                // At its root hair turns from the skin
+                points.windows(3).skip(2).any(|p| bend(p) > CORNER_DEG)
+            };
+            let corners = (0..strands.len()).filter(|&index| has_corner(index)).count();
+            assert!(corners * 1000 < strands.len(), "{}: {corners} of {} strands", ready.name, strands.len());
+        }
+    }
+
+    #[test]
     fn long_hair_falls_over_the_clothes() {
         const DEPTH_M: f32 = 0.002;
         let meshes = build(&READY[0].figure());
