@@ -172,8 +172,8 @@ fn light_numbers(lanes: &LightLanes, depth: u32, sampler: &Sampler, first_set: &
     numbers
 }
 
-/// Chooses one of [`LANES`] candidates at most in proportion to their weights, by `u` in [0, 1). Returns it with its probability.
-/// One whose weight is not finite is chosen, so that the film reports it.
+/// Chooses one of [`LANES`] candidates at most in proportion to their weights, by `u` in [0, 1). Returns it with its
+/// probability. One whose weight is not finite is chosen, so that the film reports it.
 fn choose_in_proportion<T: Copy>(
     candidates: impl Iterator<Item = T>,
     weight: impl Fn(&T) -> f32,

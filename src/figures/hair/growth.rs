@@ -41,7 +41,7 @@ const CUT_SCATTER_M: f32 = 0.004;
 const LEAST_OVER_EARS_M: f32 = 0.05;
 /// Length of a strand that moves along with a point which keeps clear of an obstacle, to each side, metres.
 const MOVED_WITH_M: f32 = 0.1;
-/// Least way of such a point, metres: less bends no strand.
+/// Least displacement of such a point, metres: less bends no strand.
 const FAR_MOVE_M: f32 = 0.002;
 /// How often the bends of a guide are rounded.
 const ROUNDINGS: usize = 6;
@@ -349,7 +349,7 @@ fn follow(
     let spread = Vec3::new(random.bell(), random.bell(), random.bell()) * style.frizz * 0.05 * style.length_m[0];
     let offset = root.position - first.root.position;
     let side = field.shoulder_side(&first.root);
-    let mut beside = first.root.normal;
+    let mut curl_axis = first.root.normal;
     let mut points = Vec::with_capacity(steps.len());
     for &StrandStep { along, gather } in steps {
         let at = along * shorter * STEPS as f32;
@@ -360,12 +360,12 @@ fn follow(
         let mut p = root.position + mean.lerp(shape(first), gather) - offset * gather * 0.8 + spread * along;
         if style.curl_m > 0.0 {
             let tangent = (first.points[low + 1] - first.points[low]).normalize_or(Vec3::NEG_Y);
-            // A direction beside the guide that bends with it and does not turn about it
-            beside = (beside - tangent * tangent.dot(beside)).normalize_or(tangent.any_orthonormal_vector());
+            // Perpendicular to the guide: it bends with the guide and does not turn about it
+            curl_axis = (curl_axis - tangent * tangent.dot(curl_axis)).normalize_or(tangent.any_orthonormal_vector());
             let length = at / STEPS as f32 * style.length_m[0];
             let turns = style.turns_per_m * length + phase;
             let (sin, cos) = sin_cos_turn(turns - turns as u32 as f32);
-            p += (beside * cos + tangent.cross(beside) * sin) * style.curl_m * (along * 4.0).min(1.0);
+            p += (curl_axis * cos + tangent.cross(curl_axis) * sin) * style.curl_m * (along * 4.0).min(1.0);
         }
         points.push((p, style.radius_m * (1.0 - 0.7 * along * along)));
     }
@@ -383,13 +383,13 @@ fn follow(
     points
 }
 
-/// Moves the points of a strand behind its root to where `moved` wants them. Where that is far, those before and behind
+/// Moves the points of a strand behind its root to where `moved` puts them. Where that is far, those before and behind
 /// move along, less with the distance: the strand keeps clear of an obstacle in a curve and not in a step. Returns true
 /// if there is such a place.
 fn move_smoothly(points: &mut [(Vec3, f32)], moved: &dyn Fn(Vec3) -> Vec3) -> bool {
     let wanted: Vec<Vec3> = points.iter().map(|(p, _)| moved(*p) - *p).collect();
-    let way = |k: usize| wanted.get(k).map_or(0.0, |offset| offset.length_squared());
-    let is_peak = |k: usize| way(k) > FAR_MOVE_M * FAR_MOVE_M && way(k) >= way(k - 1).max(way(k + 1));
+    let squared = |k: usize| wanted.get(k).map_or(0.0, |offset| offset.length_squared());
+    let is_peak = |k: usize| squared(k) > FAR_MOVE_M * FAR_MOVE_M && squared(k) >= squared(k - 1).max(squared(k + 1));
     let peaks: Vec<usize> = (1..wanted.len()).filter(|&k| is_peak(k)).collect();
     let mut from_root = vec![0.0];
     if !peaks.is_empty() {

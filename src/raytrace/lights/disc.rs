@@ -62,8 +62,8 @@ impl Disc {
         height * height + lateral * lateral < 0.25 * self.radius * self.radius
     }
 
-    /// Samples a point of the disc, seen from `from`. Returns the vector to it and the density of its direction, 1/sr; none
-    /// for rejected samples and for a disc seen edge-on.
+    /// Samples a point of the disc, seen from `from`. Returns the vector to it and the density of its direction, 1/sr;
+    /// none for rejected samples and for a disc seen edge-on.
     pub fn sample(&self, from: Vec3, u: Vec2) -> Option<(Vec3, f32)> {
         if self.is_near(from) {
             let (to, pdf) = self.bounding_square().seen_from(from).sample(from, u)?;

@@ -88,7 +88,8 @@ impl Rect {
         if seen.is_far() { seen } else { seen.with_solid_angle() }
     }
 
-    /// Samples a point uniformly by area, seen from `from`. Returns the vector to it and the density of its direction, 1/sr.
+    /// Samples a point uniformly by area, seen from `from`. Returns the vector to it and the density of its direction,
+    /// 1/sr.
     #[inline(always)]
     pub fn sample_by_area(&self, from: Vec3, u: Vec2) -> (Vec3, f32) {
         let offset = (2.0 * u - Vec2::ONE) * self.half;
@@ -175,8 +176,8 @@ impl SphericalRect<'_> {
         self.solid_angle < MIN_SOLID_ANGLE
     }
 
-    /// Samples a point of the rectangle, seen from `from`. Returns the vector to it and the density of its direction, 1/sr;
-    /// none for a rectangle seen edge-on.
+    /// Samples a point of the rectangle, seen from `from`. Returns the vector to it and the density of its direction,
+    /// 1/sr; none for a rectangle seen edge-on.
     #[inline(always)]
     pub fn sample(&self, from: Vec3, u: Vec2) -> Option<(Vec3, f32)> {
         let (to, pdf) =
