@@ -6,6 +6,7 @@
 use super::clock::Clock;
 use super::forecast::{Estimate, Forecast};
 use super::monitor::RenderMonitor;
+use super::quiet_time::{Due, QuietTime};
 use super::render::{RenderInput, RenderStage, render};
 use super::threads::{Priority, background_pool};
 use super::worker::{Inbox, Interrupt, Wake, Worker, WorkerSettings};
@@ -45,10 +46,7 @@ struct Pilot {
 #[derive(Debug)]
 pub struct Forecaster {
     worker: Worker<Pilot, Option<Forecast>>,
-    clock: Clock,
-    subject: Option<ForecastSubject>,
-    /// When the studio changed; none once its pilot has started.
-    changed: Option<Instant>,
+    quiet: QuietTime<ForecastSubject>,
     forecast: Option<Forecast>,
     /// Time and noise of real renders of this studio as it is.
     measured: Vec<Estimate>,
@@ -71,7 +69,7 @@ impl Forecaster {
             }
         };
         let worker = Worker::new(WORKER, work);
-        Forecaster { worker, clock, subject: None, changed: None, forecast: None, measured: Vec::new() }
+        Forecaster { worker, quiet: QuietTime::new(PILOT_DELAY, clock), forecast: None, measured: Vec::new() }
     }
 
     /// Runs a pilot when the studio has changed and [`PILOT_DELAY`] has passed, but not beside a render. To be called
@@ -84,22 +82,19 @@ impl Forecaster {
         is_rendering: bool,
         wake: &Wake,
     ) -> Option<Duration> {
-        if self.subject != Some(subject) {
-            (self.subject, self.changed) = (Some(subject), Some(self.clock.now()));
+        if self.quiet.follow(subject) {
             self.worker.reset();
             self.measured.clear();
         }
-        let mut wait = None;
-        if let Some(changed) = self.changed.filter(|_| !is_rendering) {
-            let age = self.clock.now() - changed;
-            if age >= PILOT_DELAY {
-                self.changed = None;
+        let wait = match self.quiet.due(!is_rendering) {
+            Due::Now => {
                 let pilot = Pilot { scene: scene.clone(), assets: assets.clone(), method: subject.method };
                 self.worker.request(pilot, wake);
-            } else {
-                wait = Some(PILOT_DELAY - age);
+                None
             }
-        }
+            Due::After(wait) => Some(wait),
+            Due::No => None,
+        };
         if let Some(result) = self.worker.take() {
             self.forecast = result.unwrap_or(None);
         }
@@ -108,12 +103,10 @@ impl Forecaster {
 
     /// Takes over the measurement of a real render, which replaces the pilot's.
     pub fn learn(&mut self, subject: ForecastSubject, forecast: Forecast, measured: Estimate) {
-        if self.subject != Some(subject) {
+        if self.quiet.settle(subject) {
             self.measured.clear();
-            self.subject = Some(subject);
         }
         self.forecast = Some(forecast.with_pilot(self.forecast.as_ref()));
-        self.changed = None;
         self.worker.reset();
         self.measured.push(measured);
     }
@@ -130,7 +123,7 @@ impl Forecaster {
 
     /// Returns true if a pilot is running or about to start.
     pub fn is_busy(&self) -> bool {
-        self.changed.is_some() || self.worker.is_busy()
+        self.quiet.is_waiting() || self.worker.is_busy()
     }
 }
 
@@ -227,9 +220,9 @@ mod tests {
         assert_eq!(update(&mut forecaster, 2, false), Some(PILOT_DELAY), "a change starts the delay anew");
         *time.lock().unwrap() += PILOT_DELAY;
         assert_eq!(update(&mut forecaster, 2, true), None, "a render has the CPU for itself");
-        assert!(forecaster.changed.is_some());
+        assert!(forecaster.quiet.is_waiting());
         assert_eq!(update(&mut forecaster, 2, false), None);
-        assert!(forecaster.changed.is_none() && forecaster.is_busy(), "the pilot has started");
+        assert!(!forecaster.quiet.is_waiting() && forecaster.is_busy(), "the pilot has started");
         while forecaster.is_busy() {
             woken.recv().unwrap();
             update(&mut forecaster, 2, false);

@@ -1,11 +1,13 @@
-//! Background work for the window and the command line: renders, development of films, the live traced view, bounced
-//! light of the preview, light meter readings, pattern checks of faces, render forecasts and thumbnails.
+//! Background work for the window and the command line: renders, BVHs built ahead of them, development of films, the live
+//! traced view, bounced light of the preview, light meter readings, pattern checks of faces, render forecasts and
+//! thumbnails.
 //!
 //! It depends on neither egui nor wgpu. A job of the window is a [`worker`]: a thread with a request slot and a result
 //! slot, each of which holds the latest value only, and a [`Wake`] callback. The command line calls the functions that
 //! those threads run: [`render()`], [`read_meter`], [`LivePacing::step`].
 
 mod bounce;
+mod cache_warmer;
 mod clock;
 mod denoised_film;
 mod film_developer;
@@ -17,6 +19,7 @@ mod memory;
 mod meter;
 mod monitor;
 mod portrait;
+mod quiet_time;
 mod render;
 mod render_job;
 mod render_part;
@@ -27,6 +30,7 @@ mod thumbnails;
 pub mod worker;
 
 pub use bounce::{BounceJob, trace_bounced_light};
+pub use cache_warmer::{CacheWarmer, WarmSubject};
 pub use clock::Clock;
 pub use film_developer::{Developed, Development, FilmDeveloper};
 pub use forecast::{Estimate, Forecast};

@@ -28,7 +28,7 @@ use crate::editor::window::dialogs::FileDialogs;
 use crate::editor::window::recovery::Recovery;
 use crate::editor::window::rescue;
 use crate::editor::window::session::Session;
-use crate::jobs::{Estimate, Forecast, ForecastSubject, RenderOutcome, sentence};
+use crate::jobs::{Estimate, Forecast, ForecastSubject, RenderOutcome, WarmSubject, sentence};
 use crate::raytrace::GeometryCache;
 use crate::scene::SceneChange;
 use eframe::egui::text_selection::LabelSelectionState;
@@ -213,6 +213,11 @@ impl App {
         let figure = if let Some(Item::Object(id)) = self.selection.last() { Some(id) } else { None };
         let (scene, assets) = (document.scene(), document.assets());
         self.background.pattern.update(scene, assets, figure, document.revision(), &wake(ctx));
+        let (surfaces, picture) = (document.revisions().surfaces, self.rendering.settings.pixels(&scene.camera));
+        let (subject, is_rendering) = (WarmSubject { surfaces, picture }, self.rendering.is_running());
+        if let Some(wait) = self.background.warmer.update(subject, scene, assets, is_rendering, &wake(ctx)) {
+            ctx.request_repaint_after(wait);
+        }
         if let Some(sharing) = self.rendering.take_sharing() {
             self.toasts.warning(sentence(&sharing));
         }

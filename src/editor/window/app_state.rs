@@ -18,7 +18,7 @@ use crate::editor::ui::side_panel::SidePanel;
 use crate::editor::viewport::viewport_area::Viewport;
 use crate::editor::window::background_tasks::{BackgroundTasks, TaskResult};
 use crate::editor::window::frame_log::FrameLog;
-use crate::jobs::{Clock, Forecaster, MeterJob, PatternJob};
+use crate::jobs::{CacheWarmer, Clock, Forecaster, MeterJob, PatternJob};
 use crate::raytrace::GeometryCache;
 use crate::setup::{MeasurementJob, RoomAudit, SetupTransport};
 use std::sync::Arc;
@@ -141,6 +141,8 @@ pub struct BackgroundState {
     pub pattern: PatternJob,
     /// The estimate of render time and noise.
     pub forecaster: Forecaster,
+    /// The BVHs of the next render.
+    pub warmer: CacheWarmer,
     /// The pictures of presets and catalog entries.
     pub thumbnails: Thumbnails,
 }
@@ -156,7 +158,8 @@ impl BackgroundState {
             transport: MeasurementJob::new(SetupTransport::measure, geometry.clone()),
             room_audit: MeasurementJob::new(RoomAudit::measure, geometry.clone()),
             pattern: PatternJob::default(),
-            forecaster: Forecaster::new(geometry, Clock::default()),
+            forecaster: Forecaster::new(geometry.clone(), Clock::default()),
+            warmer: CacheWarmer::new(geometry, Clock::default()),
             thumbnails: Thumbnails::default(),
         }
     }
