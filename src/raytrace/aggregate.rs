@@ -7,7 +7,7 @@
 //! some of them.
 
 use super::blas::Blas;
-use super::bvh::{self, TraversalStack, WideBvh};
+use super::bvh::{self, BuildEffort, TraversalStack, WideBvh};
 use super::geometry::{Instance, MeshGeometry, SurfaceInteraction};
 use super::ray_filter::RayFilter;
 use super::simd::{self, KernelTask, Kernels, SlabRay, TriangleHit};
@@ -143,7 +143,7 @@ impl Aggregate {
         let cached = cached.iter().find(|merged| merged.is_over(&sources)).cloned();
         let merged = cached.unwrap_or_else(|| Arc::new(MergedBlas::new(&instances, sources)));
         // Build the TLAS over the large instances and the strands
-        let tlas = bvh::build(&boxes, 1);
+        let tlas = bvh::build(&boxes, 1, BuildEffort::Reinsertion);
         Aggregate { instances, merged, tlas, tlas_entries }
     }
 

@@ -1,6 +1,6 @@
 //! The bottom-level acceleration structure (BLAS): a BVH over triangles or other primitives.
 
-use super::bvh::{self, TraversalStack, WideBvh};
+use super::bvh::{self, BuildEffort, TraversalStack, WideBvh};
 use super::simd::{Kernels, LANES, ShearedRay, SlabRay, TriangleHit, TrianglePacket};
 use crate::math::Ray;
 use glam::Vec3;
@@ -12,6 +12,8 @@ pub trait LeafPacket: Send {
     type PreparedRay;
     /// Their intersection with a ray.
     type Hit: Copy;
+    /// The work of the build that pays in the traversal.
+    const BUILD_EFFORT: BuildEffort;
 
     /// Prepares a ray.
     fn prepare(ray: &Ray) -> Self::PreparedRay;
@@ -26,6 +28,7 @@ pub trait LeafPacket: Send {
 impl LeafPacket for TrianglePacket {
     type PreparedRay = ShearedRay;
     type Hit = TriangleHit;
+    const BUILD_EFFORT: BuildEffort = BuildEffort::Reinsertion;
 
     #[inline(always)]
     fn prepare(ray: &Ray) -> ShearedRay {
@@ -73,7 +76,7 @@ impl<P: LeafPacket> Blas<P> {
     /// Builds the BVH over primitives with these bounding boxes. `pack` makes the packet of a leaf from the indices of
     /// its primitives.
     pub fn build(boxes: &[(Vec3, Vec3)], pack: impl Fn(&[u32]) -> P + Sync) -> Self {
-        let bvh = bvh::build(boxes, LANES as u32);
+        let bvh = bvh::build(boxes, LANES as u32, P::BUILD_EFFORT);
         let packets = (0..bvh.leaf_count() as u32).into_par_iter().map(|leaf| pack(bvh.leaf(leaf))).collect();
         Blas { bvh, packets }
     }

@@ -12,6 +12,7 @@
 //!   takes the time, not the memory.
 
 use super::blas::{Blas, LeafPacket};
+use super::bvh::BuildEffort;
 use super::simd::{Kernels, RibbonRay, SegmentHit, SegmentPacket};
 use super::strand_detail::{StrandLevel, is_thinned};
 use crate::math::Ray;
@@ -25,6 +26,8 @@ pub type StrandBlas = Blas<SegmentPacket>;
 impl LeafPacket for SegmentPacket {
     type PreparedRay = RibbonRay;
     type Hit = SegmentHit;
+    // Reinsertion takes a quarter of the build, and rays are no faster for it
+    const BUILD_EFFORT: BuildEffort = BuildEffort::Clustering;
 
     #[inline(always)]
     fn prepare(ray: &Ray) -> RibbonRay {

@@ -76,7 +76,13 @@ impl StrandGeometry {
     /// Returns the BLASes of two levels of detail.
     pub fn blases(&self, strands: &Strands, levels: StrandLevels) -> StrandBlases {
         let of = |level| self.blas(strands, level);
-        StrandBlases { levels, seen: of(levels.seen), lighting: of(levels.lighting) }
+        if levels.seen == levels.lighting {
+            let both = of(levels.seen);
+            return StrandBlases { levels, seen: both.clone(), lighting: both };
+        }
+        // Parts of each build run on one thread: side by side they keep two busy
+        let (seen, lighting) = rayon::join(|| of(levels.seen), || of(levels.lighting));
+        StrandBlases { levels, seen, lighting }
     }
 
     /// Returns the index of the part of a segment, among the strands' parts.

@@ -28,9 +28,18 @@ fn aabb((low, high): &(Vec3, Vec3)) -> Aabb {
     Aabb::new(low.to_array().into(), high.to_array().into())
 }
 
+/// How much work a build does for a faster traversal.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum BuildEffort {
+    /// Clustering alone.
+    Clustering,
+    /// Clustering and reinsertion.
+    Reinsertion,
+}
+
 /// Builds the BVH over boxes, with at most `max_leaf` primitives a leaf. Deterministic. Boxes that are points or lines
 /// are left out: their primitives have no area, and no ray hits them.
-pub fn build(boxes: &[(Vec3, Vec3)], max_leaf: u32) -> WideBvh {
+pub fn build(boxes: &[(Vec3, Vec3)], max_leaf: u32, effort: BuildEffort) -> WideBvh {
     // Leave out degenerate boxes and compute the bounds of the others
     let has_area = |&i: &u32| aabb(&boxes[i as usize]).half_area() > 0.0;
     let primitives: Vec<u32> = (0..boxes.len() as u32).into_par_iter().filter(has_area).collect();
@@ -44,7 +53,7 @@ pub fn build(boxes: &[(Vec3, Vec3)], max_leaf: u32) -> WideBvh {
     let aabbs: Vec<Aabb> = kept.par_iter().map(|&i| aabb(&boxes[i as usize])).collect();
     let mut binary = locally_ordered_clustering(&aabbs);
     // Improve it by reinsertion (Meister and Bittner 2018, "Parallel Reinsertion for BVH Optimization")
-    if expected_visits(&binary) < MAX_VISITS_FOR_REINSERTION {
+    if effort == BuildEffort::Reinsertion && expected_visits(&binary) < MAX_VISITS_FOR_REINSERTION {
         ReinsertionOptimizer::default().run(&mut binary, REINSERTION_RATIO, None);
     }
     // Restore the primitive indices, copies included
@@ -151,7 +160,7 @@ mod tests {
     const FEWER: usize = 30_000;
 
     fn built(boxes: &[(Vec3, Vec3)]) -> WideBvh {
-        let bvh = build(boxes, 8);
+        let bvh = build(boxes, 8, BuildEffort::Reinsertion);
         let mut seen: Vec<u32> = (0..bvh.leaf_count() as u32).flat_map(|leaf| bvh.leaf(leaf).to_vec()).collect();
         seen.sort_unstable();
         seen.dedup();
@@ -201,7 +210,10 @@ mod tests {
     #[test]
     fn points_and_lines_are_left_out() {
         assert_eq!(built(&vec![(Vec3::ONE, Vec3::ONE); MANY]).leaf_count(), 0);
-        assert!(build(&[(Vec3::ZERO, Vec3::X)], 8).bounds.is_none());
-        assert_eq!(build(&[(Vec3::ZERO, Vec3::X), (Vec3::ONE, Vec3::ONE * 2.0)], 8).leaf(0), [1]);
+        assert!(build(&[(Vec3::ZERO, Vec3::X)], 8, BuildEffort::Reinsertion).bounds.is_none());
+        assert_eq!(
+            build(&[(Vec3::ZERO, Vec3::X), (Vec3::ONE, Vec3::ONE * 2.0)], 8, BuildEffort::Reinsertion).leaf(0),
+            [1]
+        );
     }
 }

@@ -9,6 +9,6 @@ mod collapse;
 mod traverse;
 mod wide;
 
-pub use build::build;
+pub use build::{BuildEffort, build};
 pub use traverse::TraversalStack;
 pub use wide::WideBvh;

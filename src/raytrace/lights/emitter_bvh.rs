@@ -2,7 +2,7 @@
 
 use super::traced_light::{EmitterHit, TracedLight};
 use crate::math::Ray;
-use crate::raytrace::bvh::{self, TraversalStack, WideBvh};
+use crate::raytrace::bvh::{self, BuildEffort, TraversalStack, WideBvh};
 use crate::raytrace::simd::{self, KernelTask, Kernels, SlabRay};
 
 /// The emitters that rays can hit.
@@ -30,7 +30,7 @@ impl EmitterBvh {
                 None => {}
             }
         }
-        emitters.bvh = bvh::build(&boxes, 1);
+        emitters.bvh = bvh::build(&boxes, 1, BuildEffort::Reinsertion);
         emitters
     }
 
