@@ -9,6 +9,7 @@ use flate2::Compression;
 use flate2::read::ZlibDecoder;
 use flate2::write::ZlibEncoder;
 use glam::{Vec2, Vec3};
+use rayon::prelude::*;
 use std::collections::{BTreeMap, HashMap};
 use std::io::{Read, Write};
 use std::sync::LazyLock;
@@ -157,7 +158,7 @@ fn mirrored(one_side: &[(u16, [i32; 3])], mirror: &[u16]) -> Vec<(u16, [i32; 3])
             _ => {}
         }
     }
-    both.sort_unstable();
+    both.sort_unstable_by_key(|(vertex, _)| *vertex);
     both
 }
 
@@ -200,6 +201,20 @@ impl Encoder {
     }
 }
 
+/// A target as it is in a file.
+struct StoredTarget {
+    is_symmetric: bool,
+    /// By vertex; those of one side for a symmetric target.
+    offsets: Vec<(u16, [i32; 3])>,
+}
+
+impl StoredTarget {
+    fn whole(self, mirror: &[u16]) -> Target {
+        let all = if self.is_symmetric { mirrored(&self.offsets, mirror) } else { self.offsets };
+        Target { offsets: all.into_iter().map(|(v, o)| (v, metres(o, OFFSET_UNIT))).collect() }
+    }
+}
+
 /// The tables of a file while it is read.
 struct Decoder {
     bytes: Vec<u8>,
@@ -231,11 +246,11 @@ impl Decoder {
             let count = self.count()?;
             groups.push(QuadGroup { name, quads: self.corners(count)?, uvs: self.corners(count)? });
         }
-        let mut targets = HashMap::new();
+        let mut targets = Vec::new();
         for _ in 0..self.count()? {
-            let name = self.text()?;
-            targets.insert(name, self.target(&mirror)?);
+            targets.push((self.text()?, self.target()?));
         }
+        let targets = targets.into_par_iter().map(|(name, target)| (name, target.whole(&mirror))).collect();
         let mut bones = Vec::new();
         for _ in 0..self.count()? {
             let name = self.text()?;
@@ -264,14 +279,13 @@ impl Decoder {
         Ok(BodyData { positions, uvs, mirror, groups, targets, bones, weights, masks })
     }
 
-    fn target(&mut self, mirror: &[u16]) -> Result<Target, BodyDataError> {
+    fn target(&mut self) -> Result<StoredTarget, BodyDataError> {
         let is_symmetric = self.count()? == 1;
         let count = self.count()?;
         let vertices = self.indices(count)?;
         let [x, y, z] = [self.column(count)?, self.column(count)?, self.column(count)?];
-        let stored: Vec<_> = (0..count).map(|i| (vertices[i], [x[i], y[i], z[i]])).collect();
-        let all = if is_symmetric { mirrored(&stored, mirror) } else { stored };
-        Ok(Target { offsets: all.into_iter().map(|(v, o)| (v, metres(o, OFFSET_UNIT))).collect() })
+        let offsets = (0..count).map(|i| (vertices[i], [x[i], y[i], z[i]])).collect();
+        Ok(StoredTarget { is_symmetric, offsets })
     }
 
     fn take(&mut self, count: usize) -> Result<&[u8], BodyDataError> {

@@ -13,6 +13,7 @@ use std::sync::{Arc, LazyLock};
 
 /// Side of the gloss map, pixels: 1 mm a pixel on the face.
 const GLOSS_SIZE: usize = 1024;
+const SIDE: f32 = GLOSS_SIZE as f32;
 /// Side of the relief, pixels: 0.1 mm a pixel.
 const RELIEF_SIZE: usize = 256;
 /// Cells between furrows along a side of the relief, which shows 24 mm.
@@ -74,32 +75,41 @@ pub fn builtin_texture(texture: BuiltinTexture) -> Arc<Texture> {
 /// Draws the roughness of the skin in the texture coordinates of the base mesh: the factor is green.
 fn skin_gloss(data: &BodyData) -> Texture {
     let eyes = data.eyes_middle();
-    let mut factors = vec![1.0_f32; GLOSS_SIZE * GLOSS_SIZE];
-    for (quad, uvs) in data.group("body").iter().flat_map(|group| group.quads.iter().zip(&group.uvs)) {
+    let quads = data.group("body").into_iter().flat_map(|group| group.quads.iter().zip(&group.uvs));
+    let on_face = quads.filter_map(|(quad, uvs)| {
         let places = quad.map(|v| data.positions[usize::from(v)] - eyes);
-        if places[0].length() > FACE_M {
-            continue;
-        }
-        let pixels = uvs.map(|uv| {
-            let uv = data.uvs[usize::from(uv)];
-            Vec2::new(uv.x, 1.0 - uv.y) * GLOSS_SIZE as f32
-        });
+        let pixel = |uv: u16| Vec2::new(data.uvs[usize::from(uv)].x, 1.0 - data.uvs[usize::from(uv)].y) * SIDE;
+        (places[0].length() <= FACE_M).then(|| (places, uvs.map(pixel)))
+    });
+    // Sample each quad, twice a pixel along its sides, and keep the least factor of each pixel
+    let samples = |(places, pixels): ([Vec3; 4], [Vec2; 4])| {
         let longest = (0..4).map(|k| pixels[k].distance(pixels[(k + 1) % 4])).fold(0.0, f32::max);
         let steps = (2.0 * longest).ceil().max(1.0) as u32;
-        for (i, j) in (0..=steps).flat_map(|i| (0..=steps).map(move |j| (i, j))) {
+        (0..=steps).flat_map(move |i| (0..=steps).map(move |j| (i, j))).filter_map(move |(i, j)| {
             let (s, t) = (i as f32 / steps as f32, j as f32 / steps as f32);
             let place = places[0].lerp(places[1], s).lerp(places[3].lerp(places[2], s), t);
             let factor = factor_at(place.with_x(place.x.abs()), &OILY).y;
-            let pixel = pixels[0].lerp(pixels[1], s).lerp(pixels[3].lerp(pixels[2], s), t).as_ivec2();
-            // A pixel beyond the edge of an island belongs to it, too: between pixels they are mixed
-            for offset in (-1..=1).flat_map(|y| (-1..=1).map(move |x| IVec2::new(x, y))) {
-                let [x, y] = (pixel + offset).to_array().map(|c| c.clamp(0, GLOSS_SIZE as i32 - 1) as usize);
-                let known = &mut factors[y * GLOSS_SIZE + x];
+            let pixel = pixels[0].lerp(pixels[1], s).lerp(pixels[3].lerp(pixels[2], s), t).as_uvec2();
+            let [x, y] = pixel.to_array().map(|c| (c as usize).min(GLOSS_SIZE - 1));
+            (factor < 1.0).then_some((y * GLOSS_SIZE + x, factor))
+        })
+    };
+    let samples: Vec<(usize, f32)> = on_face.collect::<Vec<_>>().into_par_iter().flat_map_iter(samples).collect();
+    let mut least = vec![1.0_f32; GLOSS_SIZE * GLOSS_SIZE];
+    for (pixel, factor) in samples {
+        least[pixel] = least[pixel].min(factor);
+    }
+    // A pixel beyond the edge of an island belongs to it, too: between pixels they are mixed
+    let mut factors = least.clone();
+    for (pixel, factor) in least.into_iter().enumerate().filter(|(_, factor)| *factor < 1.0) {
+        let around = |c: usize| c.saturating_sub(1)..(c + 2).min(GLOSS_SIZE);
+        for y in around(pixel / GLOSS_SIZE) {
+            for known in &mut factors[y * GLOSS_SIZE..][around(pixel % GLOSS_SIZE)] {
                 *known = known.min(factor);
             }
         }
     }
-    let rgb = factors.iter().map(|factor| [255, (factor * 255.0).round() as u8, 255]).collect();
+    let rgb = factors.iter().map(|factor| [255, (factor * 255.0 + 0.5) as u8, 255]).collect();
     Texture::opaque(GLOSS_SIZE as u32, GLOSS_SIZE as u32, rgb)
 }
 

@@ -61,9 +61,8 @@ pub fn grow_head(body: &HairBody, figure: &Figure, style: &Style, strands: &mut 
     let down = body.head.inverse().transform_vector3(Vec3::NEG_Y).normalize_or(Vec3::NEG_Y);
     let field = CombField { style, obstacles: &obstacles, down };
     let every = (roots.len() / GUIDES).max(1);
-    let guide = |(index, root): (usize, &Root)| Guide {
-        root: *root,
-        points: field.grow(root, Random::new(figure.seed, 100 + index as u32)),
+    let guide = |(index, root): (usize, &Root)| {
+        Guide::new(*root, field.grow(root, Random::new(figure.seed, 100 + index as u32)))
     };
     let guides: Vec<Guide> = roots.par_iter().step_by(every).enumerate().map(guide).collect();
     let guide_roots = GuideRoots::new(&guides);
@@ -106,6 +105,21 @@ fn nearness_to_parting(style: &Style, x: f32) -> f32 {
 struct Guide {
     root: Root,
     points: Vec<Vec3>,
+    /// Unit vectors across each segment, perpendicular to each other: they bend with the guide and do not turn about it.
+    across: Vec<[Vec3; 2]>,
+}
+
+impl Guide {
+    fn new(root: Root, points: Vec<Vec3>) -> Guide {
+        let mut axis = root.normal;
+        let across = |ends: &[Vec3]| {
+            let tangent = (ends[1] - ends[0]).normalize_or(Vec3::NEG_Y);
+            axis = axis.reject_from_normalized(tangent).normalize_or(tangent.any_orthonormal_vector());
+            [axis, tangent.cross(axis)]
+        };
+        let across = points.windows(2).map(across).collect();
+        Guide { root, points, across }
+    }
 }
 
 /// The directions in which the hair of a style grows.
@@ -349,7 +363,6 @@ fn follow(
     let spread = Vec3::new(random.bell(), random.bell(), random.bell()) * style.frizz * 0.05 * style.length_m[0];
     let offset = root.position - first.root.position;
     let side = field.shoulder_side(&first.root);
-    let mut curl_axis = first.root.normal;
     let mut points = Vec::with_capacity(steps.len());
     for &StrandStep { along, gather } in steps {
         let at = along * shorter * STEPS as f32;
@@ -359,35 +372,43 @@ fn follow(
         let mean = weights.iter().map(|(w, guide)| shape(guide) * *w).sum::<Vec3>() / sum;
         let mut p = root.position + mean.lerp(shape(first), gather) - offset * gather * 0.8 + spread * along;
         if style.curl_m > 0.0 {
-            let tangent = (first.points[low + 1] - first.points[low]).normalize_or(Vec3::NEG_Y);
-            // Perpendicular to the guide: it bends with the guide and does not turn about it
-            curl_axis = (curl_axis - tangent * tangent.dot(curl_axis)).normalize_or(tangent.any_orthonormal_vector());
             let length = at / STEPS as f32 * style.length_m[0];
             let turns = style.turns_per_m * length + phase;
             let (sin, cos) = sin_cos_turn(turns - turns as u32 as f32);
-            p += (curl_axis * cos + tangent.cross(curl_axis) * sin) * style.curl_m * (along * 4.0).min(1.0);
+            let [axis, other] = first.across[low];
+            p += (axis * cos + other * sin) * style.curl_m * (along * 4.0).min(1.0);
         }
         points.push((p, style.radius_m * (1.0 - 0.7 * along * along)));
     }
     // A guide's shape from another root may lead into the skin or the clothes, or before the face
-    let outside = |p| {
-        let above = field.obstacles.above_head(p, CLEARANCE_M);
-        let beside = field.beside_face(above, &first.root);
-        if beside == above { above } else { field.obstacles.above_head(beside, CLEARANCE_M) }
+    let outside = |points: &mut [Vec3]| {
+        field.obstacles.move_above_head(points, CLEARANCE_M);
+        for p in points {
+            let beside = field.beside_face(*p, &first.root);
+            if beside != *p {
+                *p = field.obstacles.above_head(beside, CLEARANCE_M);
+            }
+        }
     };
     if move_smoothly(&mut points, &outside) {
-        points[1..].iter_mut().for_each(|(p, _)| *p = field.beside_face(outside(*p), &first.root));
+        let mut positions: Vec<Vec3> = points[1..].iter().map(|(p, _)| *p).collect();
+        outside(&mut positions);
+        points[1..].iter_mut().zip(positions).for_each(|((p, _), q)| *p = field.beside_face(q, &first.root));
     }
-    move_smoothly(&mut points, &|p| field.obstacles.over_torso(p, OVER_CLOTHES_M, side));
+    move_smoothly(&mut points, &|points: &mut [Vec3]| {
+        points.iter_mut().for_each(|p| *p = field.obstacles.over_torso(*p, OVER_CLOTHES_M, side));
+    });
     cut(&mut points, field.down, style.cut_m + CUT_SCATTER_M * random.bell());
     points
 }
 
-/// Moves the points of a strand behind its root to where `moved` puts them. Where that is far, those before and behind
+/// Moves the points of a strand behind its root to where `move_out` puts them. Where that is far, those before and behind
 /// move along, less with the distance: the strand keeps clear of an obstacle in a curve and not in a step. Returns true
 /// if there is such a place.
-fn move_smoothly(points: &mut [(Vec3, f32)], moved: &dyn Fn(Vec3) -> Vec3) -> bool {
-    let wanted: Vec<Vec3> = points.iter().map(|(p, _)| moved(*p) - *p).collect();
+fn move_smoothly(points: &mut [(Vec3, f32)], move_out: &dyn Fn(&mut [Vec3])) -> bool {
+    let mut wanted: Vec<Vec3> = points.iter().map(|(p, _)| *p).collect();
+    move_out(&mut wanted);
+    wanted.iter_mut().zip(&*points).for_each(|(offset, (p, _))| *offset -= *p);
     let squared = |k: usize| wanted.get(k).map_or(0.0, |offset| offset.length_squared());
     let is_peak = |k: usize| squared(k) > FAR_MOVE_M * FAR_MOVE_M && squared(k) >= squared(k - 1).max(squared(k + 1));
     let peaks: Vec<usize> = (1..wanted.len()).filter(|&k| is_peak(k)).collect();
@@ -428,7 +449,7 @@ mod tests {
         let mut place = || Vec3::new(random.unit(), random.unit(), random.unit());
         for count in [0, 2, 8, 419] {
             let root = |position| Root { position, normal: Vec3::Y, place: position };
-            let guides: Vec<Guide> = (0..count).map(|_| Guide { root: root(place()), points: vec![] }).collect();
+            let guides: Vec<Guide> = (0..count).map(|_| Guide::new(root(place()), vec![])).collect();
             let roots = GuideRoots::new(&guides);
             for position in (0..50).map(|_| place()) {
                 let distance = |guide: &Guide| guide.root.position.distance_squared(position);

@@ -4,6 +4,7 @@ use super::hair_body::HairBody;
 use crate::figures::patch::Patch;
 use crate::figures::subdivide::{QuadMesh, SubdivisionSurface};
 use crate::math::atan2;
+use crate::math::simd::{self, Avx2, LANES, SimdTask};
 use glam::{Vec2, Vec3};
 use std::f32::consts::{PI, TAU};
 
@@ -65,9 +66,8 @@ impl HeadSurface {
         }
     }
 
-    /// Returns the distance of the skin from the middle in the direction of a point, metres.
-    fn radius_towards(&self, offset: Vec3) -> f32 {
-        let at = cell_of(offset);
+    /// Returns the distance of the skin from the middle in the direction of a column and row, metres.
+    fn radius_at(&self, at: Vec2) -> f32 {
         // Both are at least 0: the whole parts are what is before the point
         let (column, line) = (at.x as usize, at.y as usize);
         let t = at - Vec2::new(column as f32, line as f32);
@@ -78,7 +78,26 @@ impl HeadSurface {
 
     /// Returns the height of a point over the skin, metres; negative inside.
     pub fn height(&self, p: Vec3) -> f32 {
-        (p - self.centre).length() - self.radius_towards(p - self.centre)
+        (p - self.centre).length() - self.radius_at(cell_of(p - self.centre))
+    }
+
+    /// Moves points as [`HeadSurface::pushed_out`] does, to the bit.
+    pub fn push_out(&self, points: &mut [Vec3], height: f32) {
+        for points in points.chunks_mut(LANES) {
+            let mut offsets = [Vec3::splat(self.greatest + height); LANES];
+            offsets.iter_mut().zip(&*points).for_each(|(offset, p)| *offset = *p - self.centre);
+            // Most of long hair is farther away than any skin
+            if offsets.iter().all(|offset| offset.length() >= self.greatest + height) {
+                continue;
+            }
+            let cells = simd::dispatch(Cells(&offsets));
+            for ((p, offset), cell) in points.iter_mut().zip(offsets).zip(cells) {
+                let missing = height - (offset.length() - self.radius_at(cell));
+                if missing > 0.0 {
+                    *p += offset.normalize_or(Vec3::Y) * missing;
+                }
+            }
+        }
     }
 
     /// Returns a point moved out to at least this height over the skin, metres.
@@ -89,6 +108,25 @@ impl HeadSurface {
         }
         let missing = height - self.height(p);
         if missing > 0.0 { p + (p - self.centre).normalize_or(Vec3::Y) * missing } else { p }
+    }
+}
+
+/// Columns and rows of directions, one a lane.
+struct Cells<'a>(&'a [Vec3; LANES]);
+
+impl SimdTask for Cells<'_> {
+    type Output = [Vec2; LANES];
+
+    #[inline(always)]
+    fn run(self, _: Option<Avx2>) -> [Vec2; LANES] {
+        let offsets = self.0;
+        let [x, y, z] = [0, 1, 2].map(|axis| -> [f32; LANES] { std::array::from_fn(|i| offsets[i][axis]) });
+        let (mut columns, mut rows) = ([0.0; LANES], [0.0; LANES]);
+        for i in 0..LANES {
+            let cell = cell_of(Vec3::new(x[i], y[i], z[i]));
+            (columns[i], rows[i]) = (cell.x, cell.y);
+        }
+        std::array::from_fn(|i| Vec2::new(columns[i], rows[i]))
     }
 }
 
@@ -104,4 +142,26 @@ fn cell_of(offset: Vec3) -> Vec2 {
     let turn = if turn < 0.0 { turn + 1.0 } else { turn };
     let polar = atan2((offset.x * offset.x + offset.z * offset.z).sqrt(), offset.y);
     Vec2::new(turn * COLUMNS as f32, polar / PI * (ROWS - 1) as f32)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::figures::random::Random;
+
+    #[test]
+    fn points_are_moved_together_as_one_by_one() {
+        let radii: Vec<f32> = (0..ROWS * COLUMNS).map(|i| 0.1 + 0.01 * (i as f32 * 0.37).sin()).collect();
+        let greatest = radii.iter().copied().fold(0.0, f32::max);
+        let surface = HeadSurface { centre: Vec3::new(0.0, 0.02, -0.08), radii, greatest };
+        let mut random = Random::new(3, 0);
+        let mut point = || surface.centre + Vec3::new(random.bell(), random.bell(), random.bell()) * 0.06;
+        let points: Vec<Vec3> = (0..1003).map(|_| point()).collect();
+        let mut together = points.clone();
+        surface.push_out(&mut together, 0.002);
+        let one_by_one: Vec<Vec3> = points.iter().map(|p| surface.pushed_out(*p, 0.002)).collect();
+        assert_eq!(together, one_by_one);
+        let moved = points.iter().zip(&together).filter(|(before, after)| before != after).count();
+        assert!((200..900).contains(&moved), "{moved} of 1003");
+    }
 }

@@ -94,6 +94,11 @@ impl Obstacles {
         self.head.pushed_out(p, height)
     }
 
+    /// Moves points as [`Obstacles::above_head`] does.
+    pub fn move_above_head(&self, points: &mut [Vec3], height: f32) {
+        self.head.push_out(points, height);
+    }
+
     /// Returns a point moved to a side of neck and shoulders, and to at least this height over the head, metres.
     pub fn pushed_out(&self, p: Vec3, height: f32, side: ShoulderSide) -> Vec3 {
         let towards = match side {
