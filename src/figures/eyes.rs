@@ -2,8 +2,8 @@
 //! portrait is traced without refraction. Below its gloss the iris has the normals of what lies there: a flat disc with
 //! fibres, so that the side opposite to a light is the brighter one, as behind a real cornea.
 //!
-//! Proportions are those of Atchison and Smith 2000, "Optics of the Human Eye": a ball of 12 mm radius, a cornea of
-//! 7.8 mm radius and an iris of 11.8 mm diameter.
+//! Sizes are those of Atchison and Smith 2000, "Optics of the Human Eye": a cornea of 7.8 mm radius and an iris of
+//! 11.8 mm diameter. The balls of the base mesh, round which its lids lie, have a radius of 13.8 mm instead of 12 mm.
 
 use super::random::Random;
 use super::subdivide::QuadMesh;
@@ -11,12 +11,14 @@ use crate::scene::Texture;
 use glam::{Affine3A, Vec2, Vec3};
 use std::f32::consts::TAU;
 
+/// Radius of a ball of the base mesh, metres.
+pub const BALL_M: f32 = 0.0138;
 /// Radius of the iris, in radii of the ball.
-const IRIS: f32 = 0.49;
+const IRIS: f32 = 0.0059 / BALL_M;
 /// Radius of the pupil in studio light, in radii of the ball.
-const PUPIL: f32 = 0.15;
+const PUPIL: f32 = 0.0018 / BALL_M;
 /// Radius of the cornea's sphere, in radii of the ball.
-const CORNEA: f32 = 0.65;
+const CORNEA: f32 = 0.0078 / BALL_M;
 /// Vertices around.
 const AROUND: usize = 96;
 /// Rings of the iris.
@@ -106,7 +108,7 @@ pub fn add_eye(mesh: &mut QuadMesh, world_from_eye: Affine3A, part: impl Fn(EyeP
 fn white_color(point: Vec3) -> Vec3 {
     let aside = ((point.x.abs() - 0.5) / 0.45).clamp(0.0, 1.0);
     let vessels = Vec3::ONE.lerp(Vec3::new(0.95, 0.78, 0.74), aside);
-    let edge = 1.0 - ((Vec2::new(point.x, point.y).length() - IRIS) / 0.07).clamp(0.0, 1.0);
+    let edge = 1.0 - ((Vec2::new(point.x, point.y).length() - IRIS) / 0.05).clamp(0.0, 1.0);
     vessels * (1.0 - 0.45 * edge)
 }
 

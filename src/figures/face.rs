@@ -43,11 +43,16 @@ pub const FACE_TARGETS: [&[&str]; 2 * FACE_PARAMETERS] = [
     &["ear-scale-incr"],
 ];
 
+/// The targets of every face, with their weights: the lobes of the base mesh's ears end in a straight line.
+pub const EVERY_FACE: [(&str, f32); 1] = [("ear-lobe-decr", 0.8)];
+/// Part of [`Expression::eyes_wide`] that neutral eyes have: the upper lids of the base mesh hang low.
+const NEUTRAL_EYES_WIDE: f32 = 0.25;
+
 const FACE_PARAMETERS: usize = <Face as ParameterSet>::PARAMETERS.len();
 
 /// Returns the targets of a face with their weights.
 pub fn face_weights(face: &Face) -> Vec<(&'static str, f32)> {
-    let mut weights = Vec::new();
+    let mut weights = EVERY_FACE.to_vec();
     for (parameter, value) in face.values().into_iter().enumerate() {
         let names = FACE_TARGETS[2 * parameter + usize::from(value > 0.0)];
         weights.extend(names.iter().map(|name| (*name, value.abs())));
@@ -74,6 +79,8 @@ pub fn expression_weights(expression: &Expression) -> Vec<(&'static str, f32)> {
     } = *expression;
     // A smile that reaches the eyes raises the cheeks and the lower lids.
     let cheeks = 0.55 * smile;
+    let [left_closed, right_closed] = [(eyes_closed + wink).min(1.0), eyes_closed];
+    let wide = |closed: f32| eyes_wide + NEUTRAL_EYES_WIDE * (1.0 - eyes_wide) * (1.0 - closed);
     vec![
         ("mouthSmileLeft", smile),
         ("mouthSmileRight", smile),
@@ -98,10 +105,10 @@ pub fn expression_weights(expression: &Expression) -> Vec<(&'static str, f32)> {
         ("browOuterUpRight", brows_up),
         ("browDownLeft", brows_down),
         ("browDownRight", brows_down),
-        ("eyeWideLeft", eyes_wide),
-        ("eyeWideRight", eyes_wide),
-        ("eyeBlinkLeft", (eyes_closed + wink).min(1.0)),
-        ("eyeBlinkRight", eyes_closed),
+        ("eyeWideLeft", wide(left_closed)),
+        ("eyeWideRight", wide(right_closed)),
+        ("eyeBlinkLeft", left_closed),
+        ("eyeBlinkRight", right_closed),
     ]
 }
 
@@ -117,7 +124,8 @@ mod tests {
         let mut expression = Expression::default();
         expression.values_mut().into_iter().zip(all).for_each(|(value, one)| *value = one);
         let units = expression_weights(&expression).into_iter().map(|(name, _)| name);
-        for name in FACE_TARGETS.into_iter().flatten().copied().chain(units) {
+        let of_every_face = EVERY_FACE.map(|(name, _)| name);
+        for name in FACE_TARGETS.into_iter().flatten().copied().chain(of_every_face).chain(units) {
             assert!(data.targets.get(name).is_some_and(|t| !t.offsets.is_empty()), "{name}");
         }
     }

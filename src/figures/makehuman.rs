@@ -4,7 +4,7 @@
 //! Only what figures use is kept. Facial bones and toes are merged into their parents: expressions are targets.
 
 use super::body_data::{BodyData, Bone, BoneWeights, Mask, QuadGroup, Target};
-use super::face::FACE_TARGETS;
+use super::face::{EVERY_FACE, FACE_TARGETS};
 use anyhow::{Context, Result, anyhow};
 use flate2::read::GzDecoder;
 use glam::{Vec2, Vec3};
@@ -310,17 +310,18 @@ fn macro_targets(folder: &Path) -> Result<Vec<PathBuf>> {
 
 /// Returns the files of each target of the face. Those of left and right make one target.
 fn face_targets(folder: &Path) -> Result<BTreeMap<String, Vec<PathBuf>>> {
+    let wanted = || FACE_TARGETS.into_iter().flatten().copied().chain(EVERY_FACE.map(|(name, _)| name));
     let mut by_name: BTreeMap<String, Vec<PathBuf>> = BTreeMap::new();
     for part in ["nose", "mouth", "eyes", "head", "chin", "cheek", "forehead", "eyebrows", "ears", "neck"] {
         for file in files_in(&folder.join(part), "")? {
             let name = target_name(&file);
             let name = name.strip_prefix("l-").or_else(|| name.strip_prefix("r-")).unwrap_or(&name).to_owned();
-            if FACE_TARGETS.iter().any(|wanted| wanted.contains(&name.as_str())) {
+            if wanted().any(|wanted| wanted == name) {
                 by_name.entry(name).or_default().push(file);
             }
         }
     }
-    for name in FACE_TARGETS.into_iter().flatten().copied() {
+    for name in wanted() {
         anyhow::ensure!(by_name.contains_key(name), "no target {name}");
     }
     Ok(by_name)
