@@ -35,6 +35,10 @@ const PARTING_M: f32 = 0.008;
 const PARTING_DENSITY: f32 = 5.0;
 /// Scatter of the place from which a strand beside a parting takes its way, metres.
 const CROSSING_M: f32 = 0.006;
+/// Height over the hairline from which they all do, metres: at the hairline they would lie across the forehead.
+const CROSSING_FROM_M: f32 = 0.03;
+/// Scatter of the lengths of guides, as a part.
+const LENGTH_SCATTER: f32 = 0.08;
 /// Scatter of the level at which hair is cut, metres.
 const CUT_SCATTER_M: f32 = 0.004;
 /// Least length of hair at the sides that hangs over the ears, metres.
@@ -133,7 +137,8 @@ struct CombField<'a> {
 impl CombField<'_> {
     /// Grows a guide in equal steps.
     fn grow(&self, root: &Root, mut random: Random) -> Vec<Vec3> {
-        let length = self.length(root) * (1.0 + 0.08 * random.bell());
+        // A lock that is much longer than its neighbours stands out
+        let length = self.length(root) * (1.0 + LENGTH_SCATTER * random.bell().min(1.0));
         let jitter = Vec3::new(random.bell(), random.bell(), random.bell());
         if self.style.comb == Comb::ToTie { self.tied(root, length, jitter) } else { self.loose(root, length, jitter) }
     }
@@ -339,7 +344,8 @@ fn follow(
 ) -> Vec<(Vec3, f32)> {
     let style = field.style;
     // Beside a parting some strands cross to the other side, and hide the skin between both
-    let crossing = CROSSING_M * nearness_to_parting(style, root.position.x) * random.bell();
+    let over_hairline = ((root.place.y - HAIRLINE_M) / CROSSING_FROM_M).clamp(0.0, 1.0);
+    let crossing = CROSSING_M * over_hairline * nearness_to_parting(style, root.position.x) * random.bell();
     let near = guide_roots.nearest(root.position + Vec3::X * crossing);
     // Guides on the other side of a parting, or of the shoulders, are no neighbours: they go another way.
     let first = &guides[near[0].1];
