@@ -9,7 +9,6 @@ use flate2::Compression;
 use flate2::read::ZlibDecoder;
 use flate2::write::ZlibEncoder;
 use glam::{Vec2, Vec3};
-use rayon::prelude::*;
 use std::collections::{BTreeMap, HashMap};
 use std::io::{Read, Write};
 use std::sync::LazyLock;
@@ -250,7 +249,7 @@ impl Decoder {
         for _ in 0..self.count()? {
             targets.push((self.text()?, self.target()?));
         }
-        let targets = targets.into_par_iter().map(|(name, target)| (name, target.whole(&mirror))).collect();
+        let targets = targets.into_iter().map(|(name, target)| (name, target.whole(&mirror))).collect();
         let mut bones = Vec::new();
         for _ in 0..self.count()? {
             let name = self.text()?;

@@ -9,7 +9,7 @@ use super::skin_colors::{Region, factor_at, region};
 use crate::scene::{BuiltinTexture, MaterialTextures, Texture, TextureRef, TextureSlot};
 use glam::{IVec2, Vec2, Vec3};
 use rayon::prelude::*;
-use std::sync::{Arc, LazyLock};
+use std::sync::{Arc, OnceLock};
 
 /// Side of the gloss map, pixels: 1 mm a pixel on the face.
 const GLOSS_SIZE: usize = 1024;
@@ -60,16 +60,25 @@ pub fn skin_textures() -> MaterialTextures {
     textures
 }
 
-/// Returns a texture that the program draws. It is drawn once.
+/// Returns a texture that the program draws. It is kept.
 pub fn builtin_texture(texture: BuiltinTexture) -> Arc<Texture> {
-    static GLOSS: LazyLock<Arc<Texture>> = LazyLock::new(|| Arc::new(skin_gloss(BodyData::shipped())));
-    static RELIEF: LazyLock<Arc<Texture>> = LazyLock::new(|| Arc::new(skin_relief()));
-    static IRIS: LazyLock<Arc<Texture>> = LazyLock::new(|| Arc::new(iris_relief()));
+    static GLOSS: OnceLock<Arc<Texture>> = OnceLock::new();
+    static RELIEF: OnceLock<Arc<Texture>> = OnceLock::new();
+    static IRIS: OnceLock<Arc<Texture>> = OnceLock::new();
     match texture {
-        BuiltinTexture::SkinGloss => GLOSS.clone(),
-        BuiltinTexture::SkinRelief => RELIEF.clone(),
-        BuiltinTexture::IrisRelief => IRIS.clone(),
+        BuiltinTexture::SkinGloss => kept(&GLOSS, || skin_gloss(BodyData::shipped())),
+        BuiltinTexture::SkinRelief => kept(&RELIEF, skin_relief),
+        BuiltinTexture::IrisRelief => kept(&IRIS, iris_relief),
     }
+}
+
+fn kept(texture: &OnceLock<Arc<Texture>>, draw: impl FnOnce() -> Texture) -> Arc<Texture> {
+    let known = texture.get().cloned();
+    known.unwrap_or_else(|| {
+        // Not under the lock: a thread that waits for parallel parts may run another task that wants the same texture
+        let drawn = Arc::new(draw());
+        texture.get_or_init(|| drawn).clone()
+    })
 }
 
 /// Draws the roughness of the skin in the texture coordinates of the base mesh: the factor is green.
