@@ -33,10 +33,11 @@ struct Sampled {
 }
 
 #[test]
-fn the_estimated_noise_of_every_shipped_studio_is_the_scatter_over_sixteen_seeds() {
+fn the_estimated_noise_of_every_shipped_studio_is_the_scatter_over_thirty_two_seeds() {
     // It was overstated by 23 to 42 % with 4 samples and by 16 to 28 % with 8. A picture is one tile here. The scatter of
-    // 1024 pixels, some of which hold most of it, is known to some 10 %.
-    const SEEDS: u32 = 16;
+    // 1024 pixels, some of which hold most of it, is known to some 7 %. Of soft skin a sample can be far below zero, which
+    // the estimate counts and the picture cuts off: in one of sixteen seeds it would be a third of the noise.
+    const SEEDS: u32 = 32;
     const SPP: [u32; 2] = [4, 8];
     let mut ratios = [0.0; SPP.len()];
     for preset in presets() {
