@@ -208,6 +208,7 @@ struct StoredTarget {
 }
 
 impl StoredTarget {
+    /// Returns the target with the offsets of both sides, metres.
     fn whole(self, mirror: &[u16]) -> Target {
         let all = if self.is_symmetric { mirrored(&self.offsets, mirror) } else { self.offsets };
         Target { offsets: all.into_iter().map(|(v, o)| (v, metres(o, OFFSET_UNIT))).collect() }

@@ -13,7 +13,7 @@ use std::sync::{Arc, OnceLock};
 
 /// Side of the gloss map, pixels: 1 mm a pixel on the face.
 const GLOSS_SIZE: usize = 1024;
-const SIDE: f32 = GLOSS_SIZE as f32;
+const GLOSS_SIDE: f32 = GLOSS_SIZE as f32;
 /// Side of the relief, pixels: 0.1 mm a pixel.
 const RELIEF_SIZE: usize = 256;
 /// Cells between furrows along a side of the relief, which shows 24 mm.
@@ -72,6 +72,7 @@ pub fn builtin_texture(texture: BuiltinTexture) -> Arc<Texture> {
     }
 }
 
+/// Returns a texture, which is drawn if it is not known yet.
 fn kept(texture: &OnceLock<Arc<Texture>>, draw: impl FnOnce() -> Texture) -> Arc<Texture> {
     let known = texture.get().cloned();
     known.unwrap_or_else(|| {
@@ -87,7 +88,7 @@ fn skin_gloss(data: &BodyData) -> Texture {
     let quads = data.group("body").into_iter().flat_map(|group| group.quads.iter().zip(&group.uvs));
     let on_face = quads.filter_map(|(quad, uvs)| {
         let places = quad.map(|v| data.positions[usize::from(v)] - eyes);
-        let pixel = |uv: u16| Vec2::new(data.uvs[usize::from(uv)].x, 1.0 - data.uvs[usize::from(uv)].y) * SIDE;
+        let pixel = |uv: u16| Vec2::new(data.uvs[usize::from(uv)].x, 1.0 - data.uvs[usize::from(uv)].y) * GLOSS_SIDE;
         (places[0].length() <= FACE_M).then(|| (places, uvs.map(pixel)))
     });
     // Sample each quad, twice a pixel along its sides, and keep the least factor of each pixel

@@ -92,17 +92,11 @@ fn serve(inbox: &Inbox<Request, ()>, cache: &GeometryCache) {
 mod tests {
     use super::*;
     use crate::scene::{Object, ObjectId, Shape};
-    use std::sync::Mutex;
     use std::sync::mpsc::channel;
-    use std::time::Instant;
 
     #[test]
     fn what_a_render_needs_is_built_when_the_surfaces_have_not_changed_for_a_while_and_nothing_renders() {
-        let time = Arc::new(Mutex::new(Instant::now()));
-        let clock = Clock::new({
-            let time = time.clone();
-            move || *time.lock().unwrap()
-        });
+        let (clock, advance) = Clock::by_hand();
         let (sender, woken) = channel();
         let wake: Wake = Arc::new(move || sender.send(()).unwrap_or_default());
         let cache: Arc<GeometryCache> = Arc::default();
@@ -115,10 +109,10 @@ mod tests {
             (wait, warmer.is_busy())
         };
         assert_eq!(update(1, false), (Some(DELAY), true));
-        *time.lock().unwrap() += DELAY / 4;
+        advance(DELAY / 4);
         assert_eq!(update(1, false), (Some(DELAY - DELAY / 4), true));
         assert_eq!(update(2, false), (Some(DELAY), true), "a change starts the delay anew");
-        *time.lock().unwrap() += DELAY;
+        advance(DELAY);
         assert_eq!(update(2, true), (None, true), "a render has the CPU for itself");
         assert_eq!(cache.builds(), 0);
         while update(2, false).1 {

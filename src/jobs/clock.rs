@@ -13,6 +13,16 @@ impl Clock {
         Clock(Arc::new(now))
     }
 
+    /// Returns a clock that stands still, and a function that advances it.
+    #[cfg(test)]
+    pub(super) fn by_hand() -> (Self, impl Fn(std::time::Duration)) {
+        use std::sync::{Mutex, PoisonError};
+        let time = Arc::new(Mutex::new(Instant::now()));
+        let read = time.clone();
+        let clock = Clock::new(move || *read.lock().unwrap_or_else(PoisonError::into_inner));
+        (clock, move |by| *time.lock().unwrap_or_else(PoisonError::into_inner) += by)
+    }
+
     /// Returns the current time.
     pub fn now(&self) -> Instant {
         (self.0)()

@@ -169,7 +169,6 @@ mod tests {
     use crate::jobs::render_all_passes;
     use crate::raytrace;
     use crate::scene::{HairStyle, Shape};
-    use std::sync::Mutex;
     use std::sync::mpsc::channel;
 
     #[test]
@@ -200,11 +199,7 @@ mod tests {
 
     #[test]
     fn a_pilot_starts_when_the_studio_has_not_changed_for_a_while_and_nothing_renders() {
-        let time = Arc::new(Mutex::new(Instant::now()));
-        let clock = Clock::new({
-            let time = time.clone();
-            move || *time.lock().unwrap()
-        });
+        let (clock, advance) = Clock::by_hand();
         let (sender, woken) = channel();
         let wake: Wake = Arc::new(move || sender.send(()).unwrap_or_default());
         let mut forecaster = Forecaster::new(Arc::default(), clock);
@@ -215,10 +210,10 @@ mod tests {
             forecaster.update(subject(revision), &scene, &assets, is_rendering, &wake)
         };
         assert_eq!(update(&mut forecaster, 1, false), Some(PILOT_DELAY));
-        *time.lock().unwrap() += Duration::from_millis(600);
+        advance(Duration::from_millis(600));
         assert_eq!(update(&mut forecaster, 1, false), Some(Duration::from_millis(100)));
         assert_eq!(update(&mut forecaster, 2, false), Some(PILOT_DELAY), "a change starts the delay anew");
-        *time.lock().unwrap() += PILOT_DELAY;
+        advance(PILOT_DELAY);
         assert_eq!(update(&mut forecaster, 2, true), None, "a render has the CPU for itself");
         assert!(forecaster.quiet.is_waiting());
         assert_eq!(update(&mut forecaster, 2, false), None);

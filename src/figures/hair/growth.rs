@@ -35,7 +35,8 @@ const PARTING_M: f32 = 0.008;
 const PARTING_DENSITY: f32 = 5.0;
 /// Scatter of the place from which a strand beside a parting takes its way, metres.
 const CROSSING_M: f32 = 0.006;
-/// Height over the hairline from which they all do, metres: at the hairline they would lie across the forehead.
+/// Height over the hairline from which that scatter is whole, metres: strands that cross the parting at the hairline would
+/// lie across the forehead.
 const CROSSING_FROM_M: f32 = 0.03;
 /// Scatter of the lengths of guides, as a part.
 const LENGTH_SCATTER: f32 = 0.08;
