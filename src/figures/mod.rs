@@ -75,7 +75,7 @@ pub fn face_point(figure: &Figure) -> Vec3 {
 
 /// Returns the point between the pupils in object space, metres.
 pub fn eye_point(figure: &Figure) -> Vec3 {
-    head_frame(figure).transform_point3(Vec3::Z * EYE_RADIUS_M)
+    head_frame(figure).transform_point3(Vec3::Z * eyes::BALL_M)
 }
 
 /// Returns the corneas of a figure's left and right eye in object space, metres.
@@ -89,8 +89,6 @@ pub fn face_direction(figure: &Figure) -> Vec3 {
     head_frame(figure).transform_vector3(Vec3::Z).normalize_or(Vec3::Z)
 }
 
-/// Radius of an eyeball, metres.
-const EYE_RADIUS_M: f32 = 0.012;
 /// The middle of the face from the point between the eyeballs' middles, for a height of 1.7 m, metres.
 const FACE_FROM_EYES: Vec3 = Vec3::new(0.0, -0.018, 0.02);
 

@@ -4,14 +4,14 @@
 //! healthy eyes; where the lid of the body data stands off it is an ellipse that bridges the gap. Tears are clear: the
 //! colours behind them are those of the white and of the lid's edge.
 
-use super::EYE_RADIUS_M;
 use super::body_data::BodyData;
+use super::eyes::BALL_M;
 use super::subdivide::QuadMesh;
 use glam::{Affine3A, Vec2, Vec3};
 use std::f32::consts::FRAC_PI_2;
 
 /// Radius of the fillet, in radii of the ball.
-const RADIUS: f32 = 0.0003 / EYE_RADIUS_M;
+const RADIUS: f32 = 0.0003 / BALL_M;
 /// Steps along the lid, and around the fillet.
 const ALONG: usize = 20;
 const AROUND: usize = 4;
