@@ -11,7 +11,7 @@ use crate::scene::Texture;
 use glam::{Affine3A, Vec2, Vec3};
 use std::f32::consts::TAU;
 
-/// Radius of a ball of the base mesh, metres.
+/// Radius of an eyeball of the base mesh, metres.
 pub const BALL_M: f32 = 0.0138;
 /// Radius of the iris, in radii of the ball.
 const IRIS: f32 = 0.0059 / BALL_M;

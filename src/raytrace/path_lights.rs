@@ -333,8 +333,8 @@ mod tests {
         }
     }
 
-    /// A soft and glossy wall beside a matte floor; the reflection of the panel on the wall is far brighter than that of
-    /// the lamp, or far darker.
+    /// Returns a soft, glossy wall beside a matte floor, and two panels: where the gloss reflects one towards the floor,
+    /// it reflects next to nothing of the other.
     fn soft_wall() -> Scene {
         let mean_free_path_mm = [1.29, 0.99, 0.79];
         let matte = Material { base_color: [0.6; 3], roughness: 1.0, ior: 1.0, ..Material::default() };
