@@ -3,7 +3,8 @@
 //! fibres, so that the side opposite to a light is the brighter one, as behind a real cornea.
 //!
 //! Sizes are those of Atchison and Smith 2000, "Optics of the Human Eye": a cornea of 7.8 mm radius and an iris of
-//! 11.8 mm diameter. The balls of the base mesh, round which its lids lie, have a radius of 13.8 mm instead of 12 mm.
+//! 11.8 mm diameter. The balls of the base mesh, round which its lids lie, have a radius of 13.8 mm instead of 12 mm, and
+//! grow with the figure to 15 mm and more; irises do not, as people's do not.
 
 use super::random::Random;
 use super::subdivide::QuadMesh;
@@ -13,12 +14,14 @@ use std::f32::consts::TAU;
 
 /// Radius of an eyeball of the base mesh, metres.
 pub const BALL_M: f32 = 0.0138;
-/// Radius of the iris, in radii of the ball.
-const IRIS: f32 = 0.0059 / BALL_M;
-/// Radius of the pupil in studio light, in radii of the ball.
-const PUPIL: f32 = 0.0018 / BALL_M;
-/// Radius of the cornea's sphere, in radii of the ball.
-const CORNEA: f32 = 0.0078 / BALL_M;
+/// Radius of the iris, metres.
+const IRIS_M: f32 = 0.0059;
+/// Greatest radius of the iris, in radii of the ball.
+const GREATEST_IRIS: f32 = IRIS_M / BALL_M;
+/// Radius of the pupil in studio light, in radii of the iris.
+const PUPIL: f32 = 0.0018 / IRIS_M;
+/// Radius of the cornea's sphere, in radii of the iris.
+const CORNEA: f32 = 0.0078 / IRIS_M;
 /// Vertices around.
 const AROUND: usize = 96;
 /// Rings of the iris.
@@ -43,19 +46,28 @@ pub struct Cornea {
 
 impl Cornea {
     /// Sine of the angle between the axis and the edge of the cap, where the iris ends.
-    pub const EDGE_SINE: f32 = IRIS / CORNEA;
+    pub const EDGE_SINE: f32 = 1.0 / CORNEA;
 
     /// Returns the cornea of an eye; see [`add_eye`].
     pub fn new(world_from_eye: Affine3A) -> Cornea {
         let axis = world_from_eye.transform_vector3(Vec3::Z);
-        let centre = world_from_eye.transform_point3(Vec3::Z * cornea_centre());
-        Cornea { centre, radius: CORNEA * axis.length(), axis: axis.normalize_or(Vec3::Z) }
+        let iris = iris_radius(world_from_eye);
+        let centre = world_from_eye.transform_point3(Vec3::Z * cornea_centre(iris));
+        Cornea { centre, radius: CORNEA * iris * axis.length(), axis: axis.normalize_or(Vec3::Z) }
     }
 }
 
-/// Returns the distance of the centre of the cornea's sphere in front of the ball's, in radii of the ball.
-fn cornea_centre() -> f32 {
-    (1.0 - IRIS * IRIS).sqrt() - (CORNEA * CORNEA - IRIS * IRIS).sqrt()
+/// Returns the radius of the iris of an eye, in radii of the ball: that of people, and no more of a ball than on the
+/// base mesh.
+fn iris_radius(world_from_eye: Affine3A) -> f32 {
+    let ball = world_from_eye.transform_vector3(Vec3::Z).length();
+    (IRIS_M / ball).min(GREATEST_IRIS)
+}
+
+/// Returns the distance of the centre of the cornea's sphere in front of the ball's, of an iris's radius, in radii of
+/// the ball.
+fn cornea_centre(iris: f32) -> f32 {
+    (1.0 - iris * iris).sqrt() - iris * (CORNEA * CORNEA - 1.0).sqrt()
 }
 
 /// Parts of an eye, in the order of [`EyePart`].
@@ -73,30 +85,31 @@ pub enum EyePart {
 /// radius 1 that looks along +Z to its place; `part` numbers the parts.
 pub fn add_eye(mesh: &mut QuadMesh, world_from_eye: Affine3A, part: impl Fn(EyePart) -> u8) -> Vec<Vec3> {
     let first = mesh.positions.len();
+    let iris_radius = iris_radius(world_from_eye);
     // The white, from the back to the edge of the iris
-    let limit = IRIS.asin();
+    let limit = iris_radius.asin();
     let white = (0..=20).map(|i| {
         let angle = std::f32::consts::PI + (limit - std::f32::consts::PI) * i as f32 / 20.0;
         Vec2::new(angle.sin(), angle.cos())
     });
     add_rings(mesh, world_from_eye, part(EyePart::White), white);
     // The cornea: a steeper sphere through the edge of the iris, which is painted on it, as is the pupil
-    let centre = cornea_centre();
+    let centre = cornea_centre(iris_radius);
     let cap = |from: f32, to: f32, steps: u32| {
         let (from, to) = ((from / CORNEA).asin(), (to / CORNEA).asin());
         (0..=steps).map(move |i| {
             let angle = from + (to - from) * i as f32 / steps as f32;
-            Vec2::new(CORNEA * angle.sin(), centre + CORNEA * angle.cos())
+            Vec2::new(0.0, centre) + iris_radius * CORNEA * Vec2::new(angle.sin(), angle.cos())
         })
     };
     let iris = mesh.positions.len();
-    add_rings(mesh, world_from_eye, part(EyePart::Iris), cap(IRIS, PUPIL, IRIS_RINGS));
+    add_rings(mesh, world_from_eye, part(EyePart::Iris), cap(1.0, PUPIL, IRIS_RINGS));
     let pupil = mesh.positions.len();
     add_rings(mesh, world_from_eye, part(EyePart::Pupil), cap(PUPIL, 0.0, 4));
     // Colours by the place on the eye
     let to_eye = world_from_eye.inverse();
     let color = |(i, position): (usize, &Vec3)| match first + i {
-        vertex if vertex < iris => white_color(to_eye.transform_point3(*position)),
+        vertex if vertex < iris => white_color(to_eye.transform_point3(*position), iris_radius),
         vertex if vertex < pupil => iris_color((vertex - iris) % AROUND, (vertex - iris) / AROUND),
         _ => Vec3::ONE,
     };
@@ -105,10 +118,10 @@ pub fn add_eye(mesh: &mut QuadMesh, world_from_eye: Affine3A, part: impl Fn(EyeP
 
 /// Returns the colour of the white at a point: pinker towards the corners, where vessels are, and grey at the edge of
 /// the iris, which shows through.
-fn white_color(point: Vec3) -> Vec3 {
+fn white_color(point: Vec3, iris_radius: f32) -> Vec3 {
     let aside = ((point.x.abs() - 0.5) / 0.45).clamp(0.0, 1.0);
     let vessels = Vec3::ONE.lerp(Vec3::new(0.95, 0.78, 0.74), aside);
-    let edge = 1.0 - ((Vec2::new(point.x, point.y).length() - IRIS) / 0.05).clamp(0.0, 1.0);
+    let edge = 1.0 - ((Vec2::new(point.x, point.y).length() - iris_radius) / 0.05).clamp(0.0, 1.0);
     vessels * (1.0 - 0.45 * edge)
 }
 
@@ -137,8 +150,8 @@ pub fn iris_relief() -> Texture {
     let pixel = |index: usize| {
         // Rows run down, V runs up
         let v = 1.0 - ((index / width) as f32 + 0.5) / height as f32;
-        let angle = edge_of(IRIS) + (edge_of(PUPIL) - edge_of(IRIS)) * v;
-        let outwards = (CORNEA * angle.sin() - PUPIL) / (IRIS - PUPIL);
+        let angle = edge_of(1.0) + (edge_of(PUPIL) - edge_of(1.0)) * v;
+        let outwards = (CORNEA * angle.sin() - PUPIL) / (1.0 - PUPIL);
         let inwards = angle + HOLLOW_RAD * outwards;
         // Fibres end before the edge
         let across = fibres[index % width] * (4.0 * outwards * (1.0 - outwards)).clamp(0.0, 1.0);
@@ -175,7 +188,19 @@ fn add_rings(mesh: &mut QuadMesh, world: Affine3A, part: u8, profile: impl Itera
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::figures::{READY, corneas};
     use crate::math::{decode_normal, position_derivatives, tilted_normal};
+
+    #[test]
+    fn corneas_have_the_same_size_in_large_and_small_heads() {
+        for ready in &READY {
+            let figure = ready.figure();
+            let least_m = if figure.body.age_years < 18.0 { 0.007 } else { 0.0077 };
+            for cornea in corneas(&figure) {
+                assert!((least_m..0.00781).contains(&cornea.radius), "{}: {} m", ready.name, cornea.radius);
+            }
+        }
+    }
 
     #[test]
     fn the_normals_of_the_iris_lean_towards_the_pupil_and_those_of_the_cornea_away() {
