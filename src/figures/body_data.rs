@@ -109,6 +109,17 @@ impl BodyData {
         (low + high) / 2.0
     }
 
+    /// Returns the quads that mark where the lashes of the lower and of the upper lid grow, of the side `l` or `r`.
+    pub fn lash_quads(&self, side: &str) -> [&[[u16; 4]]; 2] {
+        let mut strips = [1, 2].map(|row| self.quads(&format!("helper-{side}-eyelashes-{row}")));
+        let height = |strip: &&[[u16; 4]]| {
+            let vertices = strip.iter().flatten();
+            vertices.map(|&v| self.positions[usize::from(v)].y).sum::<f32>() / (4 * strip.len().max(1)) as f32
+        };
+        strips.sort_by(|a, b| height(a).total_cmp(&height(b)));
+        strips
+    }
+
     /// Returns the index of a bone.
     pub fn bone(&self, name: &str) -> Option<usize> {
         self.bones.iter().position(|bone| bone.name == name)

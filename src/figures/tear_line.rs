@@ -82,13 +82,9 @@ pub struct Lashes {
 impl Lashes {
     /// Returns the lashes of the left and right eye, at the strips that the body data mark them by.
     pub fn of_both_eyes(data: &BodyData, positions: &[Vec3]) -> [Lashes; 2] {
-        let height = |points: &[Vec3]| points.iter().map(|p| p.y).sum::<f32>() / points.len().max(1) as f32;
         ["l", "r"].map(|side| {
-            let [first, second] = [1, 2].map(|row| {
-                let quads = data.quads(&format!("helper-{side}-eyelashes-{row}"));
-                quads.iter().flatten().map(|&v| positions[usize::from(v)]).collect::<Vec<_>>()
-            });
-            let (lower, upper) = if height(&first) < height(&second) { (first, second) } else { (second, first) };
+            let place = |quads: &[[u16; 4]]| quads.iter().flatten().map(|&v| positions[usize::from(v)]).collect();
+            let [lower, upper] = data.lash_quads(side).map(place);
             Lashes { lower, upper }
         })
     }

@@ -11,8 +11,9 @@ use glam::Vec3;
 const INNER_M: f32 = 0.0105;
 /// Hairs of both brows.
 const BROW_HAIRS: usize = 1000;
-/// Upper and lower lashes of an eye.
-const LASHES: [usize; 2] = [300, 48];
+/// Lashes of an upper and of a lower lid. Typical.
+const UPPER_LASHES: usize = 180;
+const LOWER_LASHES: usize = 60;
 
 /// Grows a beard: down and out of the skin.
 pub fn grow_beard(body: &HairBody, figure: &Figure, style: &Style, strands: &mut Strands) {
@@ -77,9 +78,7 @@ pub fn grow_lashes(body: &HairBody, figure: &Figure, strands: &mut Strands) {
     let to_head = body.head.inverse();
     for (side, eye) in ["l", "r"].into_iter().zip(body.eyes) {
         let eye = to_head.transform_point3(eye);
-        for (row, count) in LASHES.into_iter().enumerate() {
-            let group = format!("helper-{side}-eyelashes-{}", row + 1);
-            let quads = body.data.quads(&group);
+        for (quads, is_upper) in body.data.lash_quads(side).into_iter().zip([false, true]) {
             let point = |v: u16| to_head.transform_point3(body.positions[usize::from(v)]);
             // The lid's edge: the corners of a strip that lie nearest to the eyeball
             let mut rims: Vec<[Vec3; 2]> = quads
@@ -95,9 +94,8 @@ pub fn grow_lashes(body: &HairBody, figure: &Figure, strands: &mut Strands) {
             if rims.is_empty() {
                 continue;
             }
-            let is_upper = rims.iter().map(|[a, _]| a.y - eye.y).sum::<f32>() > 0.0;
-            let length = if is_upper { 0.0115 } else { 0.0055 };
-            let mut random = Random::new(figure.seed, 500_000 + row as u32 * 2 + u32::from(side == "r"));
+            let (count, length) = if is_upper { (UPPER_LASHES, 0.0105) } else { (LOWER_LASHES, 0.0055) };
+            let mut random = Random::new(figure.seed, 500_000 + u32::from(is_upper) * 2 + u32::from(side == "r"));
             for _ in 0..count {
                 let [a, b] = rims[((random.unit() * rims.len() as f32) as usize).min(rims.len() - 1)];
                 let root = a.lerp(b, random.unit());
