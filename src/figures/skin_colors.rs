@@ -19,7 +19,7 @@ const BLOOD: Vec3 = Vec3::new(0.97, 0.76, 0.73);
 /// Factor where the skin is thin over veins.
 const VEINS: Vec3 = Vec3::new(0.87, 0.82, 0.85);
 /// Factor on the lids: thin skin over muscle, with the roots of lashes.
-const LIDS: Vec3 = Vec3::new(0.7, 0.52, 0.5);
+const LIDS: Vec3 = Vec3::new(0.74, 0.6, 0.58);
 /// Factor between the roots of dense hair, which shade each other.
 const ROOTS: Vec3 = Vec3::new(0.36, 0.33, 0.31);
 /// Factor between the roots of white hair, which pass more light.
@@ -30,6 +30,9 @@ const STUBBLE: Vec3 = Vec3::new(0.62, 0.62, 0.63);
 /// How far blotches of blood and of melanin darken the skin, on average.
 const BLOOD_SPREAD: Vec3 = Vec3::new(0.012, 0.05, 0.045);
 const MELANIN_SPREAD: Vec3 = Vec3::new(0.03, 0.04, 0.05);
+
+/// Cells along a side of the noise, a power of two.
+const LATTICE: usize = 32;
 
 /// Returns the mean factor of the blotches, which only darken: factors stay below 1.
 pub fn mean_of_blotches() -> Vec3 {
@@ -110,8 +113,9 @@ fn regions() -> &'static [Region] {
 /// Returns the colour of the skin at places of the base mesh, metres from between the eyes, as factors of its base
 /// colour. 1 at [`NO_SKIN`].
 pub fn skin_colors(places: &[Vec3], figure: &Figure) -> Vec<Vec3> {
+    let blotches = Blotches::new(figure.seed);
     let color = |place: &Vec3| {
-        if *place == NO_SKIN { Vec3::ONE } else { region_color(*place, figure) * mottled(*place, figure.seed) }
+        if *place == NO_SKIN { Vec3::ONE } else { region_color(*place, figure) * blotches.factor(*place) }
     };
     places.par_iter().map(color).collect()
 }
@@ -138,29 +142,52 @@ fn region_color(place: Vec3, figure: &Figure) -> Vec3 {
     color * Vec3::ONE.lerp(STUBBLE, 0.8 * brow_density(place))
 }
 
-/// Returns the factor of the skin's unevenness at a place: blotches of blood and of melanin, some millimetres and a
-/// centimetre and a half across.
-fn mottled(place: Vec3, seed: u32) -> Vec3 {
-    let blood = 0.6 * noise(place / 0.015, seed) + 0.4 * noise(place / 0.006, seed.wrapping_add(1));
-    let melanin = 0.5 * noise(place / 0.011, seed.wrapping_add(2)) + 0.5 * noise(place / 0.0045, seed.wrapping_add(3));
-    (Vec3::ONE - BLOOD_SPREAD * (1.0 + blood) - MELANIN_SPREAD * (1.0 + melanin)).clamp(Vec3::ZERO, Vec3::ONE)
+/// Blotches of blood and of melanin of a figure.
+struct Blotches {
+    /// Where in the noise the blotches of each size lie, cells.
+    shifts: [Vec3; 4],
 }
 
-/// Returns value noise at a point: random values of -1 to 1 at points of whole coordinates, blended smoothly between.
-fn noise(point: Vec3, seed: u32) -> f32 {
+impl Blotches {
+    /// Returns the blotches of a seed.
+    fn new(seed: u32) -> Blotches {
+        let shift = |size| {
+            let mut random = Random::new(seed, size);
+            Vec3::from_array([(); 3].map(|()| random.unit())) * LATTICE as f32
+        };
+        Blotches { shifts: [0, 1, 2, 3].map(shift) }
+    }
+
+    /// Returns the factor of the skin's unevenness at a place: blotches of some millimetres and of a centimetre and a
+    /// half across.
+    fn factor(&self, place: Vec3) -> Vec3 {
+        let [large_blood, small_blood, large_melanin, small_melanin] = self.shifts;
+        let blood = 0.6 * noise(place / 0.015 + large_blood) + 0.4 * noise(place / 0.006 + small_blood);
+        let melanin = 0.5 * noise(place / 0.011 + large_melanin) + 0.5 * noise(place / 0.0045 + small_melanin);
+        (Vec3::ONE - BLOOD_SPREAD * (1.0 + blood) - MELANIN_SPREAD * (1.0 + melanin)).clamp(Vec3::ZERO, Vec3::ONE)
+    }
+}
+
+/// Returns value noise at a point: random values of -1 to 1 at points of whole coordinates, blended smoothly between. It
+/// repeats after [`LATTICE`] cells.
+fn noise(point: Vec3) -> f32 {
+    static VALUES: LazyLock<Vec<f32>> = LazyLock::new(|| {
+        let mut random = Random::new(0, 13);
+        (0..LATTICE.pow(3)).map(|_| 2.0 * random.unit() - 1.0).collect()
+    });
+    let values = &*VALUES;
     // Rounded by one instruction, as Vec3 is not
     let cell = Vec3::from(Vec3A::from(point).floor());
     let t = point - cell;
     let t = t * t * (3.0 - 2.0 * t);
-    let cell = cell.as_ivec3();
-    let value = |dx: i32, dy: i32, dz: i32| {
-        let [x, y, z] = [cell.x + dx, cell.y + dy, cell.z + dz].map(|c| c as u32 & 0x3ff);
-        2.0 * Random::new(seed, x | y << 10 | z << 20).unit() - 1.0
-    };
+    let [x, y, z] = cell.as_ivec3().to_array().map(|c| [c, c + 1].map(|c| c as usize & (LATTICE - 1)));
     let mix = |a: f32, b: f32, t: f32| a + (b - a) * t;
-    let along_x = |dy, dz| mix(value(0, dy, dz), value(1, dy, dz), t.x);
-    let along_y = |dz| mix(along_x(0, dz), along_x(1, dz), t.y);
-    mix(along_y(0), along_y(1), t.z)
+    let along_x = |y: usize, z: usize| {
+        let row = &values[(z * LATTICE + y) * LATTICE..][..LATTICE];
+        mix(row[x[0]], row[x[1]], t.x)
+    };
+    let along_y = |z: usize| mix(along_x(y[0], z), along_x(y[1], z), t.y);
+    mix(along_y(z[0]), along_y(z[1]), t.z)
 }
 
 /// Returns the mean density of hair within a distance of a place, metres.
