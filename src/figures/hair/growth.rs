@@ -50,6 +50,10 @@ const MOVED_WITH_M: f32 = 0.1;
 const FAR_MOVE_M: f32 = 0.002;
 /// How often the bends of a guide are rounded.
 const ROUNDINGS: usize = 6;
+/// How many times farther from the head a guide may reach than those whose roots are within this distance, metres, do on
+/// average.
+const MAX_TUFT: f32 = 1.12;
+const TUFT_AROUND_M: f32 = 0.03;
 /// Segments of a guide.
 const STEPS: usize = 24;
 /// Segments of a strand: of a turn of its curls, at most, and the longest without curls, metres.
@@ -69,7 +73,8 @@ pub fn grow_head(body: &HairBody, figure: &Figure, style: &Style, strands: &mut 
     let guide = |(index, root): (usize, &Root)| {
         Guide::new(*root, field.grow(root, Random::new(figure.seed, 100 + index as u32)))
     };
-    let guides: Vec<Guide> = roots.par_iter().step_by(every).enumerate().map(guide).collect();
+    let mut guides: Vec<Guide> = roots.par_iter().step_by(every).enumerate().map(guide).collect();
+    trim_tufts(&mut guides, &obstacles);
     let guide_roots = GuideRoots::new(&guides);
     let steps = steps_of(style);
     let strand = |(index, root): (usize, &Root)| {
@@ -124,6 +129,25 @@ impl Guide {
         };
         let across = points.windows(2).map(across).collect();
         Guide { root, points, across }
+    }
+}
+
+/// Trims guides that reach much farther from the head than those around them do: a lock that stands out alone is a tuft.
+fn trim_tufts(guides: &mut [Guide], obstacles: &Obstacles) {
+    let reach = |guide: &Guide| guide.points.iter().map(|p| obstacles.height_over_head(*p)).fold(0.0, f32::max);
+    let reaches: Vec<f32> = guides.par_iter().map(reach).collect();
+    let mean_around = |guide: &Guide| {
+        let is_near = |other: &Guide| other.root.position.distance(guide.root.position) < TUFT_AROUND_M;
+        let near = guides.iter().zip(&reaches).filter(|(other, _)| is_near(other));
+        let (sum, count) = near.fold((0.0, 0.0), |(sum, count), (_, reach)| (sum + reach, count + 1.0));
+        sum / count
+    };
+    let means: Vec<f32> = guides.par_iter().map(mean_around).collect();
+    for (guide, (reach, mean)) in guides.iter_mut().zip(reaches.into_iter().zip(means)) {
+        let (root, part) = (guide.root.position, MAX_TUFT * mean / reach);
+        if part < 1.0 {
+            guide.points.iter_mut().for_each(|p| *p = root.lerp(*p, part));
+        }
     }
 }
 
