@@ -1,9 +1,12 @@
 //! Checks the shipped studios as a photographer does with a meter: exposure of the key, lighting ratios, angles of the
 //! patterns. The illuminances are closed forms, independent of every renderer.
 
+use crate::people::shipped;
+use catchlight::figures::{build, head_frame};
 use catchlight::io::presets;
 use catchlight::photo::{PhotometricLight, exposure};
-use catchlight::scene::{Assets, Emitter, Light, Role, Scene};
+use catchlight::scene::{Assets, Emitter, Light, Role, Scene, Shape};
+use glam::Vec2;
 use std::f32::consts::PI;
 
 /// Returns the direct luminous exposure (lux s) of one light on a receptor at its aim that faces it.
@@ -110,4 +113,28 @@ fn portrait_patterns_have_their_textbook_angles() {
         assert!(within(azimuth, azimuths), "{file}: azimuth {azimuth}");
         assert!(within(elevation, elevations), "{file}: elevation {elevation}");
     }
+}
+
+#[test]
+fn no_lock_of_curly_hair_stands_out_of_its_outline() {
+    // As seen from the front, in sectors of 10 degrees about a point between the brows; a lock stood 20 mm over the rest
+    const SECTORS: usize = 18;
+    let loaded = shipped("loop");
+    let figure = loaded.scene.objects.iter().find_map(|object| match &object.shape {
+        Shape::Figure(figure) => Some(figure),
+        _ => None,
+    });
+    let figure = figure.unwrap();
+    let head_from_object = head_frame(figure).inverse();
+    let mut outline = [0.0_f32; SECTORS];
+    for point in build(figure).fine.strands.with_parts(|part| part == "hair").points() {
+        let p = head_from_object.transform_point3(point.position).truncate() - Vec2::new(0.0, 0.015);
+        let sector = (p.y.atan2(p.x) / PI * SECTORS as f32).floor();
+        if let Some(farthest) = outline.get_mut(sector as usize).filter(|_| sector >= 0.0) {
+            *farthest = farthest.max(p.length());
+        }
+    }
+    outline.sort_unstable_by(f32::total_cmp);
+    let tuft_m = outline[SECTORS - 1] - outline[SECTORS / 2];
+    assert!(tuft_m < 0.013, "{tuft_m} m of {outline:?}");
 }

@@ -52,8 +52,8 @@ const FAR_MOVE_M: f32 = 0.002;
 const ROUNDINGS: usize = 6;
 /// How many times farther from the head a guide may reach than those whose roots are within this distance, metres, do on
 /// average.
-const MAX_TUFT: f32 = 1.12;
-const TUFT_AROUND_M: f32 = 0.03;
+const MAX_TUFT: f32 = 1.08;
+const TUFT_AROUND_M: f32 = 0.04;
 /// Segments of a guide.
 const STEPS: usize = 24;
 /// Segments of a strand: of a turn of its curls, at most, and the longest without curls, metres.
