@@ -74,7 +74,10 @@ pub fn grow_head(body: &HairBody, figure: &Figure, style: &Style, strands: &mut 
         Guide::new(*root, field.grow(root, Random::new(figure.seed, 100 + index as u32)))
     };
     let mut guides: Vec<Guide> = roots.par_iter().step_by(every).enumerate().map(guide).collect();
-    trim_tufts(&mut guides, &obstacles);
+    // What is combed lies down
+    if style.comb == Comb::Out {
+        trim_tufts(&mut guides, &obstacles);
+    }
     let guide_roots = GuideRoots::new(&guides);
     let steps = steps_of(style);
     let strand = |(index, root): (usize, &Root)| {
