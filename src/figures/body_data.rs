@@ -109,7 +109,8 @@ impl BodyData {
         (low + high) / 2.0
     }
 
-    /// Returns the quads that mark where the lashes of the lower and of the upper lid grow, of the side `l` or `r`.
+    /// Returns the quads that mark where lashes grow: those of the lower lid and those of the upper one, at the left (`l`)
+    /// or right (`r`) eye.
     pub fn lash_quads(&self, side: &str) -> [&[[u16; 4]]; 2] {
         let mut strips = [1, 2].map(|row| self.quads(&format!("helper-{side}-eyelashes-{row}")));
         let height = |strip: &&[[u16; 4]]| {

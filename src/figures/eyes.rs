@@ -4,7 +4,7 @@
 //!
 //! Sizes are those of Atchison and Smith 2000, "Optics of the Human Eye": a cornea of 7.8 mm radius and an iris of
 //! 11.8 mm diameter. The balls of the base mesh, round which its lids lie, have a radius of 13.8 mm instead of 12 mm, and
-//! those of adults from 12.5 to 15 mm; irises have one size, as people's do.
+//! those of adult figures 12.5 to 15 mm; the iris has the same size in all of them.
 
 use super::random::Random;
 use super::subdivide::QuadMesh;
@@ -63,8 +63,8 @@ fn iris_radius(world_from_eye: Affine3A) -> f32 {
     (IRIS_M / ball).min(GREATEST_IRIS)
 }
 
-/// Returns the distance of the centre of the cornea's sphere in front of the ball's, of an iris's radius, in radii of
-/// the ball.
+/// Returns the distance from the ball's centre to that of the cornea's sphere in front of it, by the radius of the iris;
+/// both in radii of the ball.
 fn cornea_centre(iris: f32) -> f32 {
     (1.0 - iris * iris).sqrt() - iris * (CORNEA * CORNEA - 1.0).sqrt()
 }

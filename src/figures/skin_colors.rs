@@ -142,7 +142,7 @@ fn region_color(place: Vec3, figure: &Figure) -> Vec3 {
     color * Vec3::ONE.lerp(STUBBLE, 0.8 * brow_density(place))
 }
 
-/// Blotches of blood and of melanin of a figure.
+/// The blotches of blood and of melanin in a figure's skin.
 struct Blotches {
     /// Where in the noise the blotches of each size lie, cells.
     shifts: [Vec3; 4],

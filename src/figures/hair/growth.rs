@@ -74,7 +74,7 @@ pub fn grow_head(body: &HairBody, figure: &Figure, style: &Style, strands: &mut 
         Guide::new(*root, field.grow(root, Random::new(figure.seed, 100 + index as u32)))
     };
     let mut guides: Vec<Guide> = roots.par_iter().step_by(every).enumerate().map(guide).collect();
-    // What is combed lies down
+    // Other combs lay hair on the head, where shorter guides among longer ones would bend strands at a corner
     if style.comb == Comb::Out {
         trim_tufts(&mut guides, &obstacles);
     }
@@ -135,7 +135,8 @@ impl Guide {
     }
 }
 
-/// Trims guides that reach much farther from the head than those around them do: a lock that stands out alone is a tuft.
+/// Shortens guides that reach more than [`MAX_TUFT`] times as far from the head as those around them do on average: a
+/// lock that stands out alone is a tuft.
 fn trim_tufts(guides: &mut [Guide], obstacles: &Obstacles) {
     let reach = |guide: &Guide| guide.points.iter().map(|p| obstacles.height_over_head(*p)).fold(0.0, f32::max);
     let reaches: Vec<f32> = guides.par_iter().map(reach).collect();
