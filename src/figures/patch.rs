@@ -2,6 +2,7 @@
 
 use super::body_data::BodyData;
 use super::subdivide::{QuadMesh, SubdivisionSurface};
+use crate::math::PointSet;
 use glam::{Vec2, Vec3};
 use std::collections::HashMap;
 
@@ -24,29 +25,35 @@ pub struct Skin {
     positions: Vec<Vec3>,
     /// Unit normals of the vertices.
     normals: Vec<Vec3>,
+    search: PointSet,
 }
 
 impl Skin {
+    fn new(positions: Vec<Vec3>, normals: Vec<Vec3>) -> Skin {
+        Skin { search: PointSet::new(positions.iter().copied()), positions, normals }
+    }
+
     /// Returns the height of a point over the tangent plane of the nearest vertex, metres, and its unit normal. None for
     /// skin without vertices.
     pub fn height(&self, point: Vec3) -> Option<(f32, Vec3)> {
-        let distance = |i: usize| self.positions[i].distance_squared(point);
-        let nearest = (0..self.positions.len()).min_by(|&a, &b| distance(a).total_cmp(&distance(b)))?;
-        let normal = self.normals[nearest];
-        Some(((point - self.positions[nearest]).dot(normal), normal))
+        let [(_, nearest)] = self.search.nearest(point);
+        let (normal, position) = (*self.normals.get(nearest)?, self.positions[nearest]);
+        Some(((point - position).dot(normal), normal))
     }
 }
 
 impl Patch {
     /// Returns the skin of this patch.
     pub fn skin(self) -> Skin {
-        Skin { normals: self.normals(), positions: self.positions }
+        let normals = self.normals();
+        Skin::new(self.positions, normals)
     }
 
     /// Returns the skin of this patch, subdivided once.
     pub fn subdivided_skin(self) -> Skin {
         let mesh = SubdivisionSurface::new(self.into_mesh(0, &|_| Vec3::ZERO)).subdivided().mesh;
-        Skin { normals: mesh.normals(), positions: mesh.positions }
+        let normals = mesh.normals();
+        Skin::new(mesh.positions, normals)
     }
 
     /// Returns the wanted quads of a group of the body data.

@@ -60,6 +60,18 @@ pub(super) const fn region(middle: [f32; 3], radius: [f32; 3], color: Vec3, stre
 /// Squared distance, in radii, at which a region has no strength.
 const NEGLIGIBLE: f32 = 7.0;
 
+impl Region {
+    /// Returns false if the region has no strength at any place between these corners, metres from between the eyes.
+    pub(super) fn may_reach(&self, corners: &[Vec3; 4]) -> bool {
+        let (mut low, mut high) = (corners[0], corners[0]);
+        for corner in corners {
+            (low, high) = (low.min(*corner), high.max(*corner));
+        }
+        let nearest = self.middle.clamp(low, high);
+        ((nearest - self.middle) / self.radius).length_squared() < NEGLIGIBLE
+    }
+}
+
 /// Returns the product of the factors of regions at a place on the left, metres from between the eyes.
 pub(super) fn factor_at(on_left: Vec3, regions: &[Region]) -> Vec3 {
     let mut factor = Vec3::ONE;

@@ -93,12 +93,16 @@ fn skin_gloss(data: &BodyData) -> Texture {
     });
     // Sample each quad, twice a pixel along its sides, and keep the least factor of each pixel
     let samples = |(places, pixels): ([Vec3; 4], [Vec2; 4])| {
+        let both_sides = [places, places.map(|place| place.with_x(-place.x))];
+        let is_near = |region: &Region| both_sides.iter().any(|corners| region.may_reach(corners));
+        let regions: Vec<Region> = OILY.into_iter().filter(is_near).collect();
         let longest = (0..4).map(|k| pixels[k].distance(pixels[(k + 1) % 4])).fold(0.0, f32::max);
         let steps = (2.0 * longest).ceil().max(1.0) as u32;
-        (0..=steps).flat_map(move |i| (0..=steps).map(move |j| (i, j))).filter_map(move |(i, j)| {
+        let rows = if regions.is_empty() { 0..0 } else { 0..steps + 1 };
+        rows.flat_map(move |i| (0..=steps).map(move |j| (i, j))).filter_map(move |(i, j)| {
             let (s, t) = (i as f32 / steps as f32, j as f32 / steps as f32);
             let place = places[0].lerp(places[1], s).lerp(places[3].lerp(places[2], s), t);
-            let factor = factor_at(place.with_x(place.x.abs()), &OILY).y;
+            let factor = factor_at(place.with_x(place.x.abs()), &regions).y;
             let pixel = pixels[0].lerp(pixels[1], s).lerp(pixels[3].lerp(pixels[2], s), t).as_uvec2();
             let [x, y] = pixel.to_array().map(|c| (c as usize).min(GLOSS_SIZE - 1));
             (factor < 1.0).then_some((y * GLOSS_SIZE + x, factor))
@@ -110,26 +114,34 @@ fn skin_gloss(data: &BodyData) -> Texture {
         least[pixel] = least[pixel].min(factor);
     }
     // A pixel beyond the edge of an island belongs to it, too: between pixels they are mixed
-    let mut factors = least.clone();
-    for (pixel, factor) in least.into_iter().enumerate().filter(|(_, factor)| *factor < 1.0) {
-        let around = |c: usize| c.saturating_sub(1)..(c + 2).min(GLOSS_SIZE);
-        for y in around(pixel / GLOSS_SIZE) {
-            for known in &mut factors[y * GLOSS_SIZE..][around(pixel % GLOSS_SIZE)] {
-                *known = known.min(factor);
-            }
-        }
-    }
+    let factors = least_around(&least);
     let rgb = factors.iter().map(|factor| [255, (factor * 255.0 + 0.5) as u8, 255]).collect();
     Texture::opaque(GLOSS_SIZE as u32, GLOSS_SIZE as u32, rgb)
+}
+
+/// Returns for each pixel of the gloss map the least value of those within one row and one column.
+fn least_around(values: &[f32]) -> Vec<f32> {
+    let least_of_three = |index: usize, step: usize, is_first: bool, is_last: bool, values: &[f32]| {
+        let before = if is_first { f32::INFINITY } else { values[index - step] };
+        let after = if is_last { f32::INFINITY } else { values[index + step] };
+        values[index].min(before).min(after)
+    };
+    let last = GLOSS_SIZE - 1;
+    let along_row = |i: usize| least_of_three(i, 1, i % GLOSS_SIZE == 0, i % GLOSS_SIZE == last, values);
+    let rows: Vec<f32> = (0..values.len()).into_par_iter().map(along_row).collect();
+    let along_column = |i: usize| least_of_three(i, GLOSS_SIZE, i / GLOSS_SIZE == 0, i / GLOSS_SIZE == last, &rows);
+    (0..values.len()).into_par_iter().map(along_column).collect()
 }
 
 /// Draws the relief of skin, which repeats: plateaus between furrows, and pores where furrows meet.
 fn skin_relief() -> Texture {
     let side = RELIEF_SIZE as i32;
+    let cells: Vec<ReliefCell> = (0..CELLS * CELLS).map(|cell| ReliefCell::new(cell % CELLS, cell / CELLS)).collect();
     let heights: Vec<f32> = (0..side * side)
         .into_par_iter()
         .map(|pixel| {
-            relief_height(Vec2::new((pixel % side) as f32, (pixel / side) as f32) * CELLS as f32 / side as f32)
+            let point = Vec2::new((pixel % side) as f32, (pixel / side) as f32) * CELLS as f32 / side as f32;
+            relief_height(point, &cells)
         })
         .collect();
     let height = |x: i32, y: i32| heights[(y.rem_euclid(side) * side + x.rem_euclid(side)) as usize];
@@ -144,19 +156,37 @@ fn skin_relief() -> Texture {
     Texture::opaque(RELIEF_SIZE as u32, RELIEF_SIZE as u32, (0..side * side).map(normal).collect())
 }
 
-/// Returns the height of the relief at a point, both in cells (Worley 1996, "A cellular texture basis function").
-fn relief_height(point: Vec2) -> f32 {
-    let cell = point.floor().as_ivec2();
+/// A cell of the relief, in cells from its own corner.
+#[derive(Clone, Copy, Debug)]
+struct ReliefCell {
+    /// Middle of a plateau.
+    middle: Vec2,
+    /// Place of a pore, if there is one.
+    pore: Option<Vec2>,
+}
+
+impl ReliefCell {
+    fn new(x: i32, y: i32) -> ReliefCell {
+        let mut random = Random::new(x as u32, y as u32);
+        let middle = Vec2::new(random.unit(), random.unit());
+        let pore = Vec2::new(random.unit(), random.unit());
+        ReliefCell { middle, pore: (random.unit() < PORES).then_some(pore) }
+    }
+}
+
+/// Returns the height of the relief at a point, both in cells (Worley 1996, "A cellular texture basis function"). The
+/// cells are those of the relief by rows.
+fn relief_height(point: Vec2, cells: &[ReliefCell]) -> f32 {
+    let corner = point.floor().as_ivec2();
     let mut near = [f32::INFINITY; 2];
     let mut pore = 0.0_f32;
     for offset in (-2..=2).flat_map(|y| (-2..=2).map(move |x| IVec2::new(x, y))) {
-        let [x, y] = (cell + offset).to_array().map(|c| c.rem_euclid(CELLS) as u32);
-        let mut random = Random::new(x, y);
-        let middle = (cell + offset).as_vec2() + Vec2::new(random.unit(), random.unit());
-        let distance = point.distance(middle);
-        let corner = (cell + offset).as_vec2() + Vec2::new(random.unit(), random.unit());
-        if random.unit() < PORES {
-            pore = pore.max((-(point.distance_squared(corner) / 0.03)).exp());
+        let [x, y] = (corner + offset).to_array().map(|c| c.rem_euclid(CELLS));
+        let cell = cells[(y * CELLS + x) as usize];
+        let place = |in_cell: Vec2| (corner + offset).as_vec2() + in_cell;
+        let distance = point.distance(place(cell.middle));
+        if let Some(in_cell) = cell.pore {
+            pore = pore.max((-(point.distance_squared(place(in_cell)) / 0.03)).exp());
         }
         if distance < near[0] {
             near = [distance, near[0]];

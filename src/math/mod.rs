@@ -1,5 +1,5 @@
 //! Mathematics beyond glam: safe square roots and angles, frames, quadrature, quantiles, bounded least squares, sampling
-//! warps with their densities, rays with error bounds, SIMD dispatch, vectors in lanes, and approximations for them.
+//! warps with their densities, rays with error bounds, nearest points, SIMD dispatch, vectors in lanes, and approximations for them.
 
 mod angle;
 pub mod approx;
@@ -9,6 +9,7 @@ mod interval;
 mod lanes;
 mod mean;
 mod normal_map;
+mod point_set;
 mod quadrature;
 mod quantile;
 mod ray;
@@ -23,6 +24,7 @@ pub use interval::find_interval;
 pub use lanes::Vec3Lanes;
 pub use mean::mean;
 pub use normal_map::{bend_above, decode_normal, position_derivatives, tilted_normal};
+pub use point_set::PointSet;
 pub use quadrature::gauss_legendre;
 pub use quantile::quantile;
 pub use ray::{Ray, gamma, offset_origin};

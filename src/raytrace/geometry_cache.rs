@@ -9,8 +9,9 @@ use super::bsdf::{RoughnessTables, TracedMaterial};
 use super::geometry::MeshGeometry;
 use crate::scene::{Material, Mesh};
 use rayon::prelude::*;
+use rustc_hash::FxHasher;
 use std::collections::HashMap;
-use std::hash::{DefaultHasher, Hasher};
+use std::hash::Hasher;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 /// Number of triangles and strand segments that are kept although the last scene did not use them: some 300 MB.
@@ -176,7 +177,7 @@ fn primitives(mesh: &Mesh) -> usize {
 }
 
 fn hash(mesh: &Mesh) -> u64 {
-    let mut hasher = DefaultHasher::new();
+    let mut hasher = FxHasher::default();
     mesh.hash_content(&mut hasher);
     hasher.finish()
 }

@@ -6,8 +6,7 @@ use super::roots::{Root, scatter};
 use super::style::{Comb, Style, scalp_density, sideburn_density};
 use super::torso_surface::ShoulderSide;
 use crate::figures::random::Random;
-use crate::math::simd::LANES;
-use crate::math::{atan2, sin_cos_turn};
+use crate::math::{PointSet, atan2, sin_cos_turn};
 use crate::scene::{Figure, StrandPoint, Strands};
 use glam::{Quat, Vec3};
 use rayon::prelude::*;
@@ -78,7 +77,7 @@ pub fn grow_head(body: &HairBody, figure: &Figure, style: &Style, strands: &mut 
     if style.comb == Comb::Out {
         trim_tufts(&mut guides, &obstacles);
     }
-    let guide_roots = GuideRoots::new(&guides);
+    let guide_roots = PointSet::new(guides.iter().map(|guide| guide.root.position));
     let steps = steps_of(style);
     let strand = |(index, root): (usize, &Root)| {
         let random = Random::new(figure.seed, 100_000 + index as u32);
@@ -300,41 +299,6 @@ fn rounded(mut points: Vec<Vec3>) -> Vec<Vec3> {
     points
 }
 
-/// The roots of guides, eight to a block: X, Y and Z of each, infinitely far where there are fewer.
-struct GuideRoots(Vec<[[f32; LANES]; 3]>);
-
-impl GuideRoots {
-    fn new(guides: &[Guide]) -> GuideRoots {
-        let block = |guides: &[Guide]| {
-            let root = |i: usize| guides.get(i).map_or(Vec3::INFINITY, |guide| guide.root.position);
-            [0, 1, 2].map(|axis| std::array::from_fn(|i| root(i)[axis]))
-        };
-        GuideRoots(guides.chunks(LANES).map(block).collect())
-    }
-
-    /// Returns the three guides nearest to a position: squared distances and indices, the nearest first. With fewer
-    /// guides the rest are infinitely far.
-    fn nearest(&self, position: Vec3) -> [(f32, usize); 3] {
-        let mut near = [(f32::INFINITY, 0); 3];
-        for (block, [x, y, z]) in self.0.iter().enumerate() {
-            let distance = |i: usize| Vec3::new(x[i], y[i], z[i]).distance_squared(position);
-            let distances: [f32; LANES] = std::array::from_fn(distance);
-            // Skip blocks without a guide nearer than those found
-            let least = distances.iter().fold(f32::INFINITY, |least, d| if *d < least { *d } else { least });
-            if least >= near[2].0 {
-                continue;
-            }
-            for (lane, &distance) in distances.iter().enumerate() {
-                if distance < near[2].0 {
-                    near[2] = (distance, block * LANES + lane);
-                    near.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
-                }
-            }
-        }
-        near
-    }
-}
-
 /// A point of the strands of a style, the same on each.
 #[derive(Clone, Copy, Debug)]
 struct StrandStep {
@@ -366,7 +330,7 @@ fn steps_of(style: &Style) -> Vec<StrandStep> {
 /// Returns the points of a strand that follows the guides near its root, with its radius there.
 fn follow(
     root: &Root,
-    (guides, guide_roots): (&[Guide], &GuideRoots),
+    (guides, guide_roots): (&[Guide], &PointSet),
     steps: &[StrandStep],
     field: &CombField,
     mut random: Random,
@@ -375,7 +339,7 @@ fn follow(
     // Beside a parting some strands cross to the other side, and hide the skin between both
     let over_hairline = ((root.place.y - HAIRLINE_M) / CROSSING_FROM_M).clamp(0.0, 1.0);
     let crossing = CROSSING_M * over_hairline * nearness_to_parting(style, root.position.x) * random.bell();
-    let near = guide_roots.nearest(root.position + Vec3::X * crossing);
+    let near = guide_roots.nearest::<3>(root.position + Vec3::X * crossing);
     // Guides on the other side of a parting, or of the shoulders, are no neighbours: they go another way.
     let first = &guides[near[0].1];
     let reach = |guide: &Guide, step: usize| guide.points[step] - guide.root.position;
@@ -472,27 +436,4 @@ fn cut(points: &mut Vec<(Vec3, f32)>, down: Vec3, level_m: f32) {
     let t = (level_m - a.dot(down)) / (b - a).dot(down);
     points.truncate(end);
     points.push((a.lerp(b, t), radius_a + (radius_b - radius_a) * t));
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_nearest_guides_are_those_that_sorting_finds() {
-        let mut random = Random::new(7, 0);
-        let mut place = || Vec3::new(random.unit(), random.unit(), random.unit());
-        for count in [0, 2, 8, 419] {
-            let root = |position| Root { position, normal: Vec3::Y, place: position };
-            let guides: Vec<Guide> = (0..count).map(|_| Guide::new(root(place()), vec![])).collect();
-            let roots = GuideRoots::new(&guides);
-            for position in (0..50).map(|_| place()) {
-                let distance = |guide: &Guide| guide.root.position.distance_squared(position);
-                let mut all: Vec<(f32, usize)> = guides.iter().map(distance).zip(0..).collect();
-                all.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
-                all.resize(all.len().max(3), (f32::INFINITY, 0));
-                assert_eq!(roots.nearest(position), all[..3]);
-            }
-        }
-    }
 }
