@@ -151,7 +151,7 @@ fn region_color(place: Vec3, figure: &Figure) -> Vec3 {
     if beard > 0.0 {
         color *= Vec3::ONE.lerp(STUBBLE, beard * blurred(beard_density, place, 0.008));
     }
-    color * Vec3::ONE.lerp(STUBBLE, 0.8 * brow_density(place))
+    color * Vec3::ONE.lerp(STUBBLE, 0.8 * brow_density(place, figure.body.sex))
 }
 
 /// The blotches of blood and of melanin in a figure's skin.

@@ -179,14 +179,14 @@ impl ReliefCell {
 fn relief_height(point: Vec2, cells: &[ReliefCell]) -> f32 {
     let corner = point.floor().as_ivec2();
     let mut near = [f32::INFINITY; 2];
-    let mut pore = 0.0_f32;
+    let mut to_pore_squared = f32::INFINITY;
     for offset in (-2..=2).flat_map(|y| (-2..=2).map(move |x| IVec2::new(x, y))) {
         let [x, y] = (corner + offset).to_array().map(|c| c.rem_euclid(CELLS));
         let cell = cells[(y * CELLS + x) as usize];
         let place = |in_cell: Vec2| (corner + offset).as_vec2() + in_cell;
         let distance = point.distance(place(cell.middle));
         if let Some(in_cell) = cell.pore {
-            pore = pore.max((-(point.distance_squared(place(in_cell)) / 0.03)).exp());
+            to_pore_squared = to_pore_squared.min(point.distance_squared(place(in_cell)));
         }
         if distance < near[0] {
             near = [distance, near[0]];
@@ -195,7 +195,7 @@ fn relief_height(point: Vec2, cells: &[ReliefCell]) -> f32 {
         }
     }
     let from_furrow = ((near[1] - near[0]) / 0.45).clamp(0.0, 1.0);
-    FURROW * from_furrow * (2.0 - from_furrow) - PORE * pore
+    FURROW * from_furrow * (2.0 - from_furrow) - PORE * (-(to_pore_squared / 0.03)).exp()
 }
 
 #[cfg(test)]

@@ -9,6 +9,8 @@ use glam::Vec3;
 
 /// Inner end of a brow, metres from the middle of the face.
 const INNER_M: f32 = 0.0105;
+/// Highest point of a brow, metres from the middle of the face.
+const ARCH_M: f32 = 0.042;
 /// Hairs of both brows.
 const BROW_HAIRS: usize = 1000;
 /// Lashes of an upper and of a lower lid. Typical.
@@ -30,7 +32,7 @@ pub fn grow_beard(body: &HairBody, figure: &Figure, style: &Style, strands: &mut
 
 /// Grows both brows: from the nose outwards, along the arch.
 pub fn grow_brows(body: &HairBody, figure: &Figure, strands: &mut Strands) {
-    let roots = scatter(body, BROW_HAIRS, figure.seed.wrapping_add(2), &brow_density);
+    let roots = scatter(body, BROW_HAIRS, figure.seed.wrapping_add(2), &|place| brow_density(place, figure.body.sex));
     for (index, root) in roots.iter().enumerate() {
         let mut random = Random::new(figure.seed, 400_000 + index as u32);
         let outwards = root.place.x.signum();
@@ -42,14 +44,17 @@ pub fn grow_brows(body: &HairBody, figure: &Figure, strands: &mut Strands) {
     }
 }
 
-/// Returns how much brow grows at a place of the face, metres from between the eyes.
-pub fn brow_density(place: Vec3) -> f32 {
+/// Returns how much brow grows at a place of the face, metres from between the eyes. Typical shapes: women's brows rise
+/// to an arch, men's (`sex` 1) are straighter, lower and thicker.
+pub fn brow_density(place: Vec3, sex: f32) -> f32 {
     let x = place.x.abs();
+    let between = |woman: f32, man: f32| woman + (man - woman) * sex;
     // The arch rises to two thirds of its length and falls to the tail.
-    let middle = if x < 0.042 { 0.019 + 0.23 * (x - 0.012) } else { 0.0259 - 0.45 * (x - 0.042) };
+    let slope = if x < ARCH_M { between(0.15, 0.11) } else { between(-0.42, -0.34) };
+    let middle = between(0.0251, 0.0231) + slope * (x - ARCH_M);
     // It begins thin and sparse beside the nose, is widest under the arch and thins out to the tail
     let inner = ((x - INNER_M) / 0.012).clamp(0.0, 1.0);
-    let half = 0.0027 + 0.0015 * inner - 0.0024 * ((x - 0.03) / 0.028).clamp(0.0, 1.0);
+    let half = between(0.78, 1.0) * (0.0027 + 0.0015 * inner - 0.0024 * ((x - 0.03) / 0.028).clamp(0.0, 1.0));
     let is_brow = (INNER_M..0.0575).contains(&x) && place.z > -0.03;
     let fade = (0.15 + 1.6 * inner).min(1.0);
     if is_brow { fade * (1.6 * (1.0 - (place.y - middle).abs() / half)).clamp(0.0, 1.0) } else { 0.0 }
@@ -122,4 +127,47 @@ fn lash(body: &HairBody, root: Vec3, eye: Vec3, is_upper: bool, length: f32, ran
         direction = (direction + Vec3::Y * up * 0.22).normalize_or(Vec3::Z);
     }
     points
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn brows_of_women_are_finer_and_more_arched_than_those_of_men() {
+        const STEP_M: f32 = 1e-4;
+        // Area of a brow, its greatest width, and how much its arch lies over its beginning and its tail, metres
+        let measured = |sex: f32| {
+            let at = |x: f32| {
+                let heights = (0..400).map(|k| k as f32 * STEP_M);
+                let sums = heights.map(|y| (brow_density(Vec3::new(x, y, 0.0), sex), y));
+                let (width, moment) = sums.fold((0.0, 0.0), |(w, m), (d, y)| (w + d * STEP_M, m + d * y * STEP_M));
+                (width, moment / width)
+            };
+            let columns: Vec<(f32, f32)> = (115..570).map(|k| at(k as f32 * STEP_M)).collect();
+            let area: f32 = columns.iter().map(|(width, _)| width * STEP_M).sum();
+            let widest = columns.iter().map(|(width, _)| *width).fold(0.0, f32::max);
+            let arch = at(ARCH_M).1;
+            [area, widest, arch - at(0.012).1, arch - at(0.056).1]
+        };
+        let ([woman_area, woman_widest, woman_rise, woman_fall], [man_area, man_widest, man_rise, man_fall]) =
+            (measured(0.0), measured(1.0));
+        assert!(woman_area < 0.85 * man_area && woman_widest < 0.85 * man_widest, "{woman_area} {man_area} m2");
+        assert!((0.003..0.006).contains(&man_rise) && man_rise < woman_rise && woman_rise < 0.006, "{woman_rise} m");
+        assert!((0.003..0.008).contains(&man_fall) && man_fall < woman_fall && woman_fall < 0.008, "{woman_fall} m");
+        assert!((0.004..0.009).contains(&man_widest), "{man_widest} m");
+    }
+
+    #[test]
+    fn the_edge_of_a_beard_has_no_step_on_the_cheek() {
+        // Height of the upper edge, where the beard begins to grow
+        let edge = |x: f32| {
+            let heights = (0..900).map(|k| 0.01 - k as f32 * 1e-4);
+            heights.clone().find(|y| beard_density(Vec3::new(x, *y, 0.0)) > 0.0).unwrap()
+        };
+        let edges: Vec<f32> = (30..70).map(|k| edge(k as f32 * 1e-3)).collect();
+        let steepest = edges.windows(2).map(|e| (e[1] - e[0]).abs()).fold(0.0, f32::max);
+        assert!(steepest < 0.005, "{steepest} m a millimetre");
+        assert!(edges[0] < -0.035 && edges[39] > 0.0, "{edges:?}");
+    }
 }

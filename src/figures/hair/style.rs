@@ -228,8 +228,10 @@ fn angle_from_front(place: Vec3) -> f32 {
 pub fn beard_density(place: Vec3) -> f32 {
     let Vec3 { x, y, z } = place;
     let x = x.abs();
-    // From the sideburns along the jaw to the chin, round the mouth; down to the throat
-    let upper = if x > 0.055 { 0.005 } else { -0.038 - 0.25 * (0.055 - x).max(0.0) };
+    // From the sideburns in a curve over the cheek and along the jaw to the chin, round the mouth; down to the throat
+    let to_sideburn = ((x - 0.046) / 0.02).clamp(0.0, 1.0);
+    let cheek = -0.038 - 0.25 * (0.055 - x).max(0.0);
+    let upper = cheek + (0.005 - cheek) * to_sideburn * to_sideburn;
     let lower = -0.128 - 0.35 * (z + 0.02).min(0.0).abs().min(0.05) + 0.9 * (x - 0.03).max(0.0);
     let lips = (x / 0.027).powi(2) + ((y + 0.068) / 0.0115).powi(2);
     let is_skin = z > -0.078 && lips > 1.0 && !(x < 0.02 && y > -0.052);

@@ -59,7 +59,7 @@ pub fn build(boxes: &[(Vec3, Vec3)], max_leaf: u32, effort: BuildEffort) -> Wide
     // Restore the primitive indices, copies included
     match groups {
         Some(groups) => restore_copies(&mut binary, &groups),
-        None => binary.primitive_indices.iter_mut().for_each(|index| *index = kept[*index as usize]),
+        None => binary.primitive_indices.par_iter_mut().for_each(|index| *index = kept[*index as usize]),
     }
     // Collapse it to eight children a node
     let mut wide = collapse::to_wide(&binary, max_leaf);

@@ -188,12 +188,14 @@ struct WideBvhWriter<'a> {
     wide: WideBvh,
     /// Binary subtrees and their wide nodes, which have no children yet.
     queue: VecDeque<(usize, u32)>,
+    /// Binary subtrees of a leaf that are not written yet.
+    of_leaf: Vec<usize>,
 }
 
 impl<'a> WideBvhWriter<'a> {
     fn new(binary: &'a Bvh2, splits: &'a Splits, root: usize) -> Self {
         let wide = WideBvh { nodes: vec![WideNode::EMPTY], leaf_starts: vec![0], ..WideBvh::default() };
-        WideBvhWriter { binary, splits, wide, queue: VecDeque::from([(root, 0)]) }
+        WideBvhWriter { binary, splits, wide, queue: VecDeque::from([(root, 0)]), of_leaf: Vec::new() }
     }
 
     /// Adds the children of a wide node.
@@ -238,14 +240,14 @@ impl<'a> WideBvhWriter<'a> {
     /// Adds all primitives of a subtree as one leaf and returns the reference to it.
     fn push_leaf(&mut self, root: usize) -> u32 {
         let wide = &mut self.wide;
-        let mut stack = vec![root];
-        while let Some(index) = stack.pop() {
+        self.of_leaf.push(root);
+        while let Some(index) = self.of_leaf.pop() {
             let node = &self.binary.nodes[index];
             let first = node.first_index as usize;
             if node.is_leaf() {
                 wide.primitives.extend(&self.binary.primitive_indices[first..first + node.prim_count as usize]);
             } else {
-                stack.extend([first, first + 1]);
+                self.of_leaf.extend([first, first + 1]);
             }
         }
         wide.leaf_starts.push(wide.primitives.len() as u32);
