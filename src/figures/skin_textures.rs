@@ -121,16 +121,16 @@ fn skin_gloss(data: &BodyData) -> Texture {
 
 /// Returns for each pixel of the gloss map the least value of those within one row and one column.
 fn least_around(values: &[f32]) -> Vec<f32> {
-    let least_of_three = |index: usize, step: usize, is_first: bool, is_last: bool, values: &[f32]| {
-        let before = if is_first { f32::INFINITY } else { values[index - step] };
-        let after = if is_last { f32::INFINITY } else { values[index + step] };
+    let last = GLOSS_SIZE - 1;
+    // `at` is the place of a pixel along the line of its neighbours, which are `step` apart
+    let least_of_three = |values: &[f32], index: usize, step: usize, at: usize| {
+        let before = if at > 0 { values[index - step] } else { f32::INFINITY };
+        let after = if at < last { values[index + step] } else { f32::INFINITY };
         values[index].min(before).min(after)
     };
-    let last = GLOSS_SIZE - 1;
-    let along_row = |i: usize| least_of_three(i, 1, i % GLOSS_SIZE == 0, i % GLOSS_SIZE == last, values);
-    let rows: Vec<f32> = (0..values.len()).into_par_iter().map(along_row).collect();
-    let along_column = |i: usize| least_of_three(i, GLOSS_SIZE, i / GLOSS_SIZE == 0, i / GLOSS_SIZE == last, &rows);
-    (0..values.len()).into_par_iter().map(along_column).collect()
+    let pixels = || (0..values.len()).into_par_iter();
+    let of_rows: Vec<f32> = pixels().map(|i| least_of_three(values, i, 1, i % GLOSS_SIZE)).collect();
+    pixels().map(|i| least_of_three(&of_rows, i, GLOSS_SIZE, i / GLOSS_SIZE)).collect()
 }
 
 /// Draws the relief of skin, which repeats: plateaus between furrows, and pores where furrows meet.
