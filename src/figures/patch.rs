@@ -25,6 +25,7 @@ pub struct Skin {
     positions: Vec<Vec3>,
     /// Unit normals of the vertices.
     normals: Vec<Vec3>,
+    /// The positions, for the search of the nearest one.
     search: PointSet,
 }
 

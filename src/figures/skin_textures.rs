@@ -156,7 +156,7 @@ fn skin_relief() -> Texture {
     Texture::opaque(RELIEF_SIZE as u32, RELIEF_SIZE as u32, (0..side * side).map(normal).collect())
 }
 
-/// A cell of the relief, in cells from its own corner.
+/// A cell of the relief: points from its corner, in sides of a cell.
 #[derive(Clone, Copy, Debug)]
 struct ReliefCell {
     /// Middle of a plateau.
@@ -175,7 +175,7 @@ impl ReliefCell {
 }
 
 /// Returns the height of the relief at a point, both in cells (Worley 1996, "A cellular texture basis function"). The
-/// cells are those of the relief by rows.
+/// `cells` of the relief follow each other row by row.
 fn relief_height(point: Vec2, cells: &[ReliefCell]) -> f32 {
     let corner = point.floor().as_ivec2();
     let mut near = [f32::INFINITY; 2];

@@ -22,8 +22,8 @@ impl PointSet {
         PointSet(blocks)
     }
 
-    /// Returns the `N` points nearest to a position: squared distances and indices, the nearest first, and of those that
-    /// are equally near those of lower index. With fewer points the rest are infinitely far.
+    /// Returns the `N` points nearest to a position: squared distances and indices, the nearest first, and of those
+    /// that are equally near those of lower index. With fewer points the rest are infinitely far.
     pub fn nearest<const N: usize>(&self, position: Vec3) -> [(f32, usize); N] {
         let mut near = [(f32::INFINITY, 0); N];
         for (block, [x, y, z]) in self.0.iter().enumerate() {

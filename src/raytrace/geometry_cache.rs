@@ -176,6 +176,8 @@ fn primitives(mesh: &Mesh) -> usize {
     mesh.triangles.len() + mesh.strands.points().len() - mesh.strands.len()
 }
 
+/// Returns a hash of everything that a mesh consists of. Fast, as figures have a million numbers, and not safe against
+/// collisions made on purpose.
 fn hash(mesh: &Mesh) -> u64 {
     let mut hasher = FxHasher::default();
     mesh.hash_content(&mut hasher);

@@ -44,8 +44,9 @@ pub fn grow_brows(body: &HairBody, figure: &Figure, strands: &mut Strands) {
     }
 }
 
-/// Returns how much brow grows at a place of the face, metres from between the eyes. Typical shapes: women's brows rise
-/// to an arch, men's (`sex` 1) are straighter, lower and thicker.
+/// Returns how much brow grows at a place of the face (from between the eyes, metres on the base mesh), 0 to 1, for a
+/// `sex` of 0 (woman) to 1 (man). Typical shapes: women's brows rise to an arch, men's are straighter, lower and
+/// thicker.
 pub fn brow_density(place: Vec3, sex: f32) -> f32 {
     let x = place.x.abs();
     let between = |woman: f32, man: f32| woman + (man - woman) * sex;
@@ -136,7 +137,7 @@ mod tests {
     #[test]
     fn brows_of_women_are_finer_and_more_arched_than_those_of_men() {
         const STEP_M: f32 = 1e-4;
-        // Area of a brow, its greatest width, and how much its arch lies over its beginning and its tail, metres
+        // Area of a brow, its greatest thickness, and how high its arch lies over its beginning and its tail, metres
         let measured = |sex: f32| {
             let at = |x: f32| {
                 let heights = (0..400).map(|k| k as f32 * STEP_M);
