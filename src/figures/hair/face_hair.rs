@@ -11,6 +11,8 @@ use glam::Vec3;
 const INNER_M: f32 = 0.0105;
 /// Highest point of a brow, metres from the middle of the face.
 const ARCH_M: f32 = 0.042;
+/// Height of the eyes over the chin, where a beard is longest, metres.
+const CHIN_M: f32 = 0.11;
 /// Hairs of both brows.
 const BROW_HAIRS: usize = 1000;
 /// Lashes of an upper and of a lower lid. Typical.
@@ -22,12 +24,18 @@ pub fn grow_beard(body: &HairBody, figure: &Figure, style: &Style, strands: &mut
     let roots = scatter(body, style.strands, figure.seed.wrapping_add(1), &beard_density);
     for (index, root) in roots.iter().enumerate() {
         let mut random = Random::new(figure.seed, 300_000 + index as u32);
-        let [chin, cheek] = style.length_m;
-        let length =
-            (cheek + (chin - cheek) * ((-root.place.y - 0.05) / 0.06).clamp(0.0, 1.0)) * (0.7 + 0.5 * random.unit());
+        let length = beard_length(style, root.place) * (0.7 + 0.5 * random.unit());
         let comb = Vec3::new(0.0, -1.0, 0.15);
         strands.push(bent(body, root, comb, length, style, &mut random));
     }
+}
+
+/// Returns the mean length of a beard's hairs at a place of the face, metres: short at the sideburns, so that it lies
+/// close to the cheek, and longest at the chin.
+fn beard_length(style: &Style, place: Vec3) -> f32 {
+    let [chin, sideburn] = style.length_m;
+    let down = (-place.y / CHIN_M).clamp(0.0, 1.0);
+    sideburn + (chin - sideburn) * down * down
 }
 
 /// Grows both brows: from the nose outwards, along the arch.

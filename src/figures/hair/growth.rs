@@ -3,7 +3,7 @@
 use super::hair_body::HairBody;
 use super::obstacles::{OVER_CLOTHES_M, Obstacles};
 use super::roots::{Root, scatter};
-use super::style::{Comb, Style, scalp_density, sideburn_density};
+use super::style::{Comb, Style, over_hairline, scalp_density, sideburn_density};
 use super::torso_surface::ShoulderSide;
 use crate::figures::random::Random;
 use crate::math::{PointSet, atan2, sin_cos_turn};
@@ -27,11 +27,20 @@ const FACE_FROM_Z: f32 = -0.045;
 /// Place of a tie, in half axes of the skull, and its height over the skin, metres.
 const TIE: Vec3 = Vec3::new(0.0, 0.15, -1.0);
 const TIE_HEIGHT_M: f32 = 0.018;
-/// Part of a tied strand from which it lies in the tail.
+/// Radius of the tie, metres.
+const TIE_RADIUS_M: f32 = 0.011;
+/// Part of a tied strand at which it is drawn together with its neighbours, by the tie.
 const TIED_AT: f32 = 0.4;
+/// Scatter of the directions in which guides leave the tie, radians.
+const TAIL_SPREAD: f32 = 0.17;
+/// How much tied strands still lie in locks at their ends, 0 to 1.
+const LOCKS_OF_TAIL: f32 = 0.3;
 /// Half the width of the strip along a parting where roots are denser, metres, and how many times.
 const PARTING_M: f32 = 0.008;
 const PARTING_DENSITY: f32 = 5.0;
+/// Height over the hairline up to which roots of tied hair are denser, metres, and how many times.
+const EDGE_M: f32 = 0.015;
+const EDGE_DENSITY: f32 = 3.0;
 /// Scatter of the place from which a strand beside a parting takes its way, metres.
 const CROSSING_M: f32 = 0.006;
 /// Height over the hairline from which that scatter is whole, metres: strands that cross the parting at the hairline would
@@ -47,8 +56,9 @@ const LEAST_OVER_EARS_M: f32 = 0.05;
 const MOVED_WITH_M: f32 = 0.1;
 /// Least displacement of such a point, metres: less bends no strand.
 const FAR_MOVE_M: f32 = 0.002;
-/// How often the bends of a guide are rounded.
+/// How often the bends of a loose guide are rounded, and of a tied one, which turns at its tie.
 const ROUNDINGS: usize = 6;
+const TIED_ROUNDINGS: usize = 3;
 /// How many times farther from the head a guide may reach than those whose roots are within this distance, metres, do on
 /// average.
 const MAX_TUFT: f32 = 1.08;
@@ -77,11 +87,11 @@ pub fn grow_head(body: &HairBody, figure: &Figure, style: &Style, strands: &mut 
     if style.comb == Comb::Out {
         trim_tufts(&mut guides, &obstacles);
     }
-    let guide_roots = PointSet::new(guides.iter().map(|guide| guide.root.position));
+    let guides = GuidesBySide::new(guides, style);
     let steps = steps_of(style);
     let strand = |(index, root): (usize, &Root)| {
         let random = Random::new(figure.seed, 100_000 + index as u32);
-        let points = follow(root, (&guides, &guide_roots), &steps, &field, random);
+        let points = follow(root, &guides, &steps, &field, random);
         points.into_iter().map(|(p, radius_m)| (body.head.transform_point3(p), radius_m)).collect::<Vec<_>>()
     };
     let grown: Vec<Vec<(Vec3, f32)>> = roots.par_iter().enumerate().map(strand).collect();
@@ -97,14 +107,15 @@ fn is_short(style: &Style) -> bool {
 
 /// Returns the density of roots at a place of the base mesh's head, 1 where it is greatest. Hair that is combed aside
 /// covers the skin beside a parting with the few strands that grow between both: more of them grow there, or a finger's
-/// breadth of skin would show.
+/// breadth of skin would show. So do more at the edge of tied hair, which is combed away from it all round.
 fn root_density(style: &Style, place: Vec3) -> f32 {
     let density = scalp_density(place).max(if is_short(style) { sideburn_density(place) } else { 0.0 });
-    if !matches!(style.comb, Comb::FromParting(_)) {
-        return density;
-    }
-    let crowding = 1.0 + nearness_to_parting(style, place.x) * (PARTING_DENSITY - 1.0);
-    density * crowding / PARTING_DENSITY
+    let (nearness, greatest) = match style.comb {
+        Comb::FromParting(_) => (nearness_to_parting(style, place.x), PARTING_DENSITY),
+        Comb::ToTie if density > 0.0 => ((-(over_hairline(place) / EDGE_M).powi(2)).exp(), EDGE_DENSITY),
+        Comb::ToTie | Comb::FromWhorl | Comb::Out => return density,
+    };
+    density * (1.0 + nearness * (greatest - 1.0)) / greatest
 }
 
 /// Returns 1 on the parting of a style, falling to 0 within centimetres at both sides; 0 for a style without one.
@@ -131,6 +142,28 @@ impl Guide {
         };
         let across = points.windows(2).map(across).collect();
         Guide { root, points, across }
+    }
+}
+
+/// Guides by the side of the parting to which they are combed: right and left. Without a parting all are at the left.
+struct GuidesBySide([(Vec<Guide>, PointSet); 2]);
+
+impl GuidesBySide {
+    fn new(guides: Vec<Guide>, style: &Style) -> GuidesBySide {
+        let is_left = |guide: &Guide| style.side_of_parting(guide.root.position.x) > 0.0;
+        let (left, right): (Vec<Guide>, Vec<Guide>) = guides.into_iter().partition(is_left);
+        GuidesBySide([right, left].map(|guides| {
+            let roots = PointSet::new(guides.iter().map(|guide| guide.root.position));
+            (guides, roots)
+        }))
+    }
+
+    /// Returns the guides of a side and their roots; those of the other one where it has none.
+    fn on_side(&self, side: f32) -> (&[Guide], &PointSet) {
+        let [right, left] = &self.0;
+        let (wanted, other) = if side > 0.0 { (left, right) } else { (right, left) };
+        let (guides, roots) = if wanted.0.is_empty() { other } else { wanted };
+        (guides, roots)
     }
 }
 
@@ -175,10 +208,13 @@ impl CombField<'_> {
     fn tied(&self, root: &Root, length: f32, jitter: Vec3) -> Vec<Vec3> {
         let (centre, step) = (self.obstacles.skull_centre(), length / STEPS as f32);
         let tie = self.obstacles.above_head(centre + self.obstacles.skull_radii() * TIE, TIE_HEIGHT_M);
-        let (start, end) = ((root.position - centre).normalize_or(Vec3::Y), (tie - centre).normalize_or(Vec3::NEG_Z));
+        let start = (root.position - centre).normalize_or(Vec3::Y);
+        // Hair keeps its order in the tie: that from above lies on top
+        let tie = tie + start.with_z(0.0) * TIE_RADIUS_M;
+        let end = (tie - centre).normalize_or(Vec3::NEG_Z);
         let turn = Quat::from_rotation_arc(start, end);
         let to_tie_m = start.angle_between(end) * root.position.distance(centre);
-        let mut direction = (Vec3::NEG_Z + jitter * 0.25).normalize_or(Vec3::NEG_Z);
+        let mut direction = (Vec3::NEG_Z + jitter * TAIL_SPREAD).normalize_or(Vec3::NEG_Z);
         let mut position = tie;
         let point = |k: usize| {
             let along_m = k as f32 * step;
@@ -191,10 +227,11 @@ impl CombField<'_> {
                 return self.obstacles.above_head(centre + ray * 0.01, height);
             }
             direction = (direction + self.down * self.style.weight).normalize_or(self.down);
-            position = self.obstacles.pushed_out(position + direction * step, 0.0, ShoulderSide::Back);
+            let from_tie = direction * step.min(along_m - to_tie_m);
+            position = self.obstacles.pushed_out(position + from_tie, 0.0, ShoulderSide::Back);
             position
         };
-        std::iter::once(root.position).chain((1..=STEPS).map(point)).collect()
+        rounded(std::iter::once(root.position).chain((1..=STEPS).map(point)).collect(), TIED_ROUNDINGS)
     }
 
     /// Grows a guide that follows comb and gravity.
@@ -228,7 +265,7 @@ impl CombField<'_> {
                 points.push(position);
             }
         }
-        rounded(points)
+        rounded(points, ROUNDINGS)
     }
 
     /// Returns the side of the shoulders on which hair from a root falls: before the ears over the chest.
@@ -240,7 +277,7 @@ impl CombField<'_> {
     /// Returns a point of hair with a parting moved aside from the face, to the side where its root is combed.
     fn beside_face(&self, p: Vec3, root: &Root) -> Vec3 {
         let Comb::FromParting(left) = self.style.comb else { return p };
-        let side = if root.position.x >= left { 1.0 } else { -1.0 };
+        let side = self.style.side_of_parting(root.position.x);
         // From the parting at the hairline to the temples, over the height of a forehead, and as far as the jaw
         let widening = ((HAIRLINE_M - p.y) / 0.05).min((p.y - BELOW_JAW_M) / 0.08).clamp(0.0, 1.0);
         let edge = left + (FACE_HALF_WIDTH_M * side - left) * widening;
@@ -265,8 +302,8 @@ impl CombField<'_> {
         let whorl = centre + radii * Vec3::new(-0.15, 0.85, -0.55);
         let wanted = match self.style.comb {
             Comb::FromWhorl => (p - whorl).normalize_or(Vec3::NEG_Z) + self.down * 0.35,
-            Comb::FromParting(left) => {
-                let side = if root.position.x >= left { 1.0 } else { -1.0 };
+            Comb::FromParting(_) => {
+                let side = self.style.side_of_parting(root.position.x);
                 // On top hair is combed aside, at the forehead back as well; at the sides it hangs down.
                 let top = outwards.dot(-self.down).clamp(0.0, 1.0);
                 let front = ((p.z - centre.z) / radii.z).clamp(0.0, 1.0);
@@ -288,8 +325,8 @@ impl CombField<'_> {
 }
 
 /// Returns the points of a guide with its bends rounded: where it meets an obstacle it turns at once, and hair does not.
-fn rounded(mut points: Vec<Vec3>) -> Vec<Vec3> {
-    for _ in 0..ROUNDINGS {
+fn rounded(mut points: Vec<Vec3>, times: usize) -> Vec<Vec3> {
+    for _ in 0..times {
         let mut before = points[1];
         for k in 2..points.len() - 1 {
             let mean = (before + points[k] * 2.0 + points[k + 1]) * 0.25;
@@ -319,7 +356,9 @@ fn steps_of(style: &Style) -> Vec<StrandStep> {
     let step = |k: usize| {
         let along = (k as f32 / segments as f32).powf(bunching);
         let gather = match style.comb {
-            Comb::ToTie => (along / TIED_AT).min(1.0),
+            Comb::ToTie => {
+                (along / TIED_AT).min(1.0) - (1.0 - LOCKS_OF_TAIL) * ((along - TIED_AT) / (1.0 - TIED_AT)).max(0.0)
+            }
             _ => style.clumping * along.powf(0.7),
         };
         StrandStep { along, gather }
@@ -330,7 +369,7 @@ fn steps_of(style: &Style) -> Vec<StrandStep> {
 /// Returns the points of a strand that follows the guides near its root, with its radius there.
 fn follow(
     root: &Root,
-    (guides, guide_roots): (&[Guide], &PointSet),
+    guides: &GuidesBySide,
     steps: &[StrandStep],
     field: &CombField,
     mut random: Random,
@@ -339,8 +378,10 @@ fn follow(
     // Beside a parting some strands cross to the other side, and hide the skin between both
     let over_hairline = ((root.place.y - HAIRLINE_M) / CROSSING_FROM_M).clamp(0.0, 1.0);
     let crossing = CROSSING_M * over_hairline * nearness_to_parting(style, root.position.x) * random.bell();
-    let near = guide_roots.nearest::<3>(root.position + Vec3::X * crossing);
+    let place = root.position + Vec3::X * crossing;
     // Guides on the other side of a parting, or of the shoulders, are no neighbours: they go another way.
+    let (guides, guide_roots) = guides.on_side(style.side_of_parting(place.x));
+    let near = guide_roots.nearest::<3>(place);
     let first = &guides[near[0].1];
     let reach = |guide: &Guide, step: usize| guide.points[step] - guide.root.position;
     let goes_along = |guide: &Guide| {

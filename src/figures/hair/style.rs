@@ -5,6 +5,19 @@ use crate::math::atan2;
 use crate::scene::{Beard, HairStyle};
 use glam::Vec3;
 
+/// Height of the hairline over the eyes, metres, by the angle from the front, degrees, which turns about the middle of the
+/// head.
+const HAIRLINE: [(f32, f32); 8] = [
+    (0.0, 0.072),
+    (25.0, 0.069),
+    (45.0, 0.055),
+    (62.0, 0.028),
+    (80.0, 0.012),
+    (98.0, 0.018),
+    (125.0, -0.045),
+    (180.0, -0.075),
+];
+
 /// How the hair of the head is combed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Comb {
@@ -25,7 +38,7 @@ pub struct Style {
     pub strands: usize,
     /// Radius of a strand at its root, metres.
     pub radius_m: f32,
-    /// Lengths on top of the head and at the sides, metres.
+    /// Lengths on top of the head and at the sides, metres; of a beard at the chin and at the sideburns.
     pub length_m: [f32; 2],
     /// Level at which falling hair is cut, metres under the eyes; infinite where it ends by its length.
     pub cut_m: f32,
@@ -51,6 +64,17 @@ pub struct Style {
     pub clumping: f32,
     /// Spread of directions, radians.
     pub frizz: f32,
+}
+
+impl Style {
+    /// Returns the side to which hair at a distance to the left of the middle is combed, metres: 1 for the left, -1 for
+    /// the right of the parting; 1 without a parting.
+    pub fn side_of_parting(&self, x: f32) -> f32 {
+        match self.comb {
+            Comb::FromParting(left) if x < left => -1.0,
+            _ => 1.0,
+        }
+    }
 }
 
 const SHORT: Style = Style {
@@ -170,8 +194,8 @@ pub fn of_beard(beard: Beard) -> Option<Style> {
         Beard::Full => Style {
             strands: 16_000,
             radius_m: 60e-6,
-            length_m: [0.03, 0.02],
-            lift: 0.45,
+            length_m: [0.03, 0.005],
+            lift: 0.35,
             weight: 0.25,
             frizz: 0.28,
             ..SHORT
@@ -182,17 +206,6 @@ pub fn of_beard(beard: Beard) -> Option<Style> {
 /// Returns how much hair grows at a place of the scalp (from between the eyes, metres on the base mesh): 1 inside of the
 /// hairline, fading out within some millimetres.
 pub fn scalp_density(place: Vec3) -> f32 {
-    // Height of the hairline over the eyes by the angle from the front, which turns about the middle of the head.
-    const HAIRLINE: [(f32, f32); 8] = [
-        (0.0, 0.072),
-        (25.0, 0.069),
-        (45.0, 0.055),
-        (62.0, 0.028),
-        (80.0, 0.012),
-        (98.0, 0.018),
-        (125.0, -0.045),
-        (180.0, -0.075),
-    ];
     const SOFT_M: f32 = 0.006;
     // Most places are far above or below
     if place.y < HAIRLINE[HAIRLINE.len() - 1].1 || is_ear(place) {
@@ -201,11 +214,15 @@ pub fn scalp_density(place: Vec3) -> f32 {
     if place.y > HAIRLINE[0].1 + SOFT_M {
         return 1.0;
     }
+    (over_hairline(place) / SOFT_M).clamp(0.0, 1.0)
+}
+
+/// Returns the height of a place of the head over the hairline there, metres.
+pub fn over_hairline(place: Vec3) -> f32 {
     let angle = angle_from_front(place);
     let upper = HAIRLINE.iter().position(|(at, _)| *at >= angle).unwrap_or(HAIRLINE.len() - 1).max(1);
     let ((a0, h0), (a1, h1)) = (HAIRLINE[upper - 1], HAIRLINE[upper]);
-    let line = h0 + (h1 - h0) * ((angle - a0) / (a1 - a0)).clamp(0.0, 1.0);
-    ((place.y - line) / SOFT_M).clamp(0.0, 1.0)
+    place.y - h0 - (h1 - h0) * ((angle - a0) / (a1 - a0)).clamp(0.0, 1.0)
 }
 
 /// Returns how much hair grows before the ears, where short hair has sideburns; see [`scalp_density`].
