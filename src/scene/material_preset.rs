@@ -14,6 +14,11 @@ pub const COPPER: [[f32; 2]; 3] = [[0.362, 3.127], [1.015, 2.579], [1.246, 2.453
 /// Films: Application to Aluminum": 0.910, 0.915, 0.921.
 pub const ALUMINIUM: [[f32; 2]; 3] = [[1.322, 7.311], [1.011, 6.617], [0.683, 5.625]];
 
+/// Roughness of dry skin of any tone: its facets' slopes have a root mean square of 0.3, the square of this. Weyrich et al.
+/// 2006, "Analysis of Human Faces Using a Measurement-Based Skin Reflectance Model", find 0.25 to 0.45 by region of the
+/// face, and d'Eon and Luebke 2007, "Advanced Techniques for Realistic Real-Time Skin Rendering", use 0.3.
+const SKIN_ROUGHNESS: f32 = 0.55;
+
 /// A material preset.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MaterialPreset {
@@ -212,18 +217,18 @@ impl MaterialPreset {
         let metal = |base_color, roughness| Material { metallic: 1.0, ..opaque(base_color, roughness) };
         // Meshes and the outlines of views show the base colour, strands the fibre.
         let hair = |fibre, base_color| Material { fibre: Some(fibre), ..opaque(base_color, 0.5) };
-        let skin = |base_color, roughness, subsurface| Material {
+        let skin = |base_color, subsurface| Material {
             ior: 1.4,
             subsurface: Some(subsurface),
-            ..opaque(base_color, roughness)
+            ..opaque(base_color, SKIN_ROUGHNESS)
         };
         let clear = |ior| Material { transmission: 1.0, ior, ..opaque([1.0; 3], 0.0) };
         // Cloth and paper without a specular lobe: the albedo is that of both sides together
         let translucent = |base_color, translucency| Material { translucency, ior: 1.0, ..opaque(base_color, 1.0) };
         match self {
-            MaterialPreset::SkinLight => skin([0.62, 0.43, 0.34], 0.48, Subsurface::SKIN),
-            MaterialPreset::SkinMedium => skin([0.42, 0.25, 0.17], 0.45, Subsurface::MEDIUM_SKIN),
-            MaterialPreset::SkinDark => skin([0.15, 0.08, 0.05], 0.42, Subsurface::DARK_SKIN),
+            MaterialPreset::SkinLight => skin([0.62, 0.43, 0.34], Subsurface::SKIN),
+            MaterialPreset::SkinMedium => skin([0.42, 0.25, 0.17], Subsurface::MEDIUM_SKIN),
+            MaterialPreset::SkinDark => skin([0.15, 0.08, 0.05], Subsurface::DARK_SKIN),
             MaterialPreset::HairBlack => hair(Fibre::of_melanin(0.98, 0.0), [0.03; 3]),
             MaterialPreset::HairDarkBrown => hair(Fibre::of_melanin(0.9, 0.1), [0.06, 0.04, 0.03]),
             MaterialPreset::HairBrown => hair(Fibre::of_melanin(0.72, 0.2), [0.15, 0.09, 0.05]),
