@@ -24,6 +24,9 @@ const LIDS: Vec3 = Vec3::new(0.74, 0.6, 0.58);
 const ROOTS: Vec3 = Vec3::new(0.36, 0.33, 0.31);
 /// Factor between the roots of white hair, which pass more light.
 const WHITE_ROOTS: Vec3 = Vec3::new(0.72, 0.7, 0.68);
+/// Distances over which that of dense hair fades out at the hairline, and that of tied hair, which begins sparse, metres.
+const ROOTS_BLUR_M: f32 = 0.004;
+const SPARSE_ROOTS_BLUR_M: f32 = 0.012;
 /// Factor between the roots of beard and brows.
 const STUBBLE: Vec3 = Vec3::new(0.62, 0.62, 0.63);
 
@@ -141,7 +144,8 @@ fn region_color(place: Vec3, figure: &Figure) -> Vec3 {
     }
     let roots = ROOTS.lerp(WHITE_ROOTS, ((figure.body.age_years - 55.0) / 20.0).clamp(0.0, 1.0));
     if figure.hair != HairStyle::Bald {
-        color *= Vec3::ONE.lerp(roots, blurred(scalp_density, place, 0.004));
+        let blur_m = if figure.hair == HairStyle::TiedBack { SPARSE_ROOTS_BLUR_M } else { ROOTS_BLUR_M };
+        color *= Vec3::ONE.lerp(roots, blurred(scalp_density, place, blur_m));
     }
     let beard = match figure.beard {
         Beard::None => 0.0,

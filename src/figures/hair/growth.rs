@@ -3,7 +3,7 @@
 use super::hair_body::HairBody;
 use super::obstacles::{OVER_CLOTHES_M, Obstacles};
 use super::roots::{Root, scatter};
-use super::style::{Comb, Style, over_hairline, scalp_density, sideburn_density};
+use super::style::{Comb, Style};
 use super::torso_surface::ShoulderSide;
 use crate::figures::random::Random;
 use crate::math::{PointSet, atan2, sin_cos_turn};
@@ -35,12 +35,6 @@ const TIED_AT: f32 = 0.4;
 const TAIL_SPREAD: f32 = 0.17;
 /// How much tied strands still lie in locks at their ends, 0 to 1.
 const LOCKS_OF_TAIL: f32 = 0.3;
-/// Half the width of the strip along a parting where roots are denser, metres, and how many times.
-const PARTING_M: f32 = 0.008;
-const PARTING_DENSITY: f32 = 5.0;
-/// Height over the hairline up to which roots of tied hair are denser, metres, and how many times.
-const EDGE_M: f32 = 0.015;
-const EDGE_DENSITY: f32 = 3.0;
 /// Scatter of the place from which a strand beside a parting takes its way, metres.
 const CROSSING_M: f32 = 0.006;
 /// Height over the hairline from which that scatter is whole, metres: strands that cross the parting at the hairline would
@@ -50,8 +44,6 @@ const CROSSING_FROM_M: f32 = 0.03;
 const LENGTH_SCATTER: f32 = 0.08;
 /// Scatter of the level at which hair is cut, metres.
 const CUT_SCATTER_M: f32 = 0.004;
-/// Least length of hair at the sides that hangs over the ears, metres.
-const LEAST_OVER_EARS_M: f32 = 0.05;
 /// Length of a strand that moves along with a point which keeps clear of an obstacle, to each side, metres.
 const MOVED_WITH_M: f32 = 0.1;
 /// Least displacement of such a point, metres: less bends no strand.
@@ -74,8 +66,8 @@ const LONGEST_STEP_M: f32 = 0.006;
 
 /// Grows the strands of a style.
 pub fn grow_head(body: &HairBody, figure: &Figure, style: &Style, strands: &mut Strands) {
-    let roots = scatter(body, style.strands, figure.seed, &|place| root_density(style, place));
-    let obstacles = Obstacles::new(body, &roots, matches!(style.comb, Comb::FromParting(_)) && !is_short(style));
+    let roots = scatter(body, style.strands, figure.seed, &|place| style.root_density(place));
+    let obstacles = Obstacles::new(body, &roots, matches!(style.comb, Comb::FromParting(_)) && !style.is_short());
     let down = body.head.inverse().transform_vector3(Vec3::NEG_Y).normalize_or(Vec3::NEG_Y);
     let field = CombField { style, obstacles: &obstacles, down };
     let every = (roots.len() / GUIDES).max(1);
@@ -98,30 +90,6 @@ pub fn grow_head(body: &HairBody, figure: &Figure, style: &Style, strands: &mut 
     for points in grown {
         strands.push(points.into_iter().map(|(position, radius_m)| StrandPoint { position, radius_m }));
     }
-}
-
-/// Returns true for a style whose hair is too short at the sides to hang over the ears.
-fn is_short(style: &Style) -> bool {
-    style.length_m[1] < LEAST_OVER_EARS_M
-}
-
-/// Returns the density of roots at a place of the base mesh's head, 1 where it is greatest. Hair that is combed aside
-/// covers the skin beside a parting with the few strands that grow between both: more of them grow there, or a finger's
-/// breadth of skin would show. So do more at the edge of tied hair, which is combed away from it all round.
-fn root_density(style: &Style, place: Vec3) -> f32 {
-    let density = scalp_density(place).max(if is_short(style) { sideburn_density(place) } else { 0.0 });
-    let (nearness, greatest) = match style.comb {
-        Comb::FromParting(_) => (nearness_to_parting(style, place.x), PARTING_DENSITY),
-        Comb::ToTie if density > 0.0 => ((-(over_hairline(place) / EDGE_M).powi(2)).exp(), EDGE_DENSITY),
-        Comb::ToTie | Comb::FromWhorl | Comb::Out => return density,
-    };
-    density * (1.0 + nearness * (greatest - 1.0)) / greatest
-}
-
-/// Returns 1 on the parting of a style, falling to 0 within centimetres at both sides; 0 for a style without one.
-fn nearness_to_parting(style: &Style, x: f32) -> f32 {
-    let Comb::FromParting(left) = style.comb else { return 0.0 };
-    (-((x - left) / PARTING_M).powi(2)).exp()
 }
 
 /// A strand that others follow, in the head's frame.
@@ -377,7 +345,7 @@ fn follow(
     let style = field.style;
     // Beside a parting some strands cross to the other side, and hide the skin between both
     let over_hairline = ((root.place.y - HAIRLINE_M) / CROSSING_FROM_M).clamp(0.0, 1.0);
-    let crossing = CROSSING_M * over_hairline * nearness_to_parting(style, root.position.x) * random.bell();
+    let crossing = CROSSING_M * over_hairline * style.nearness_to_parting(root.position.x) * random.bell();
     let place = root.position + Vec3::X * crossing;
     // Guides on the other side of a parting, or of the shoulders, are no neighbours: they go another way.
     let (guides, guide_roots) = guides.on_side(style.side_of_parting(place.x));

@@ -18,6 +18,17 @@ const HAIRLINE: [(f32, f32); 8] = [
     (180.0, -0.075),
 ];
 
+/// Half the width of the strip along a parting where roots are denser, metres, and how many times.
+const PARTING_M: f32 = 0.008;
+const PARTING_DENSITY: f32 = 5.0;
+/// Height over the hairline up to which roots of tied hair are denser, metres, and how many times; and up to which they
+/// fade out.
+const EDGE_M: f32 = 0.015;
+const EDGE_DENSITY: f32 = 3.0;
+const SOFT_EDGE_M: f32 = 0.02;
+/// Least length of hair at the sides that hangs over the ears, metres.
+const LEAST_OVER_EARS_M: f32 = 0.05;
+
 /// How the hair of the head is combed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Comb {
@@ -67,6 +78,38 @@ pub struct Style {
 }
 
 impl Style {
+    /// Returns true if the hair is too short at the sides to hang over the ears.
+    pub fn is_short(&self) -> bool {
+        self.length_m[1] < LEAST_OVER_EARS_M
+    }
+
+    /// Returns the density of roots at a place of the base mesh's head, at most 1. Hair that is combed aside covers
+    /// the skin beside a parting with the few strands that grow between both: more of them grow there, or a finger's
+    /// breadth of skin would show. So do more behind the edge of tied hair, which is combed away from it all round and
+    /// begins sparse.
+    pub fn root_density(&self, place: Vec3) -> f32 {
+        let density = scalp_density(place).max(if self.is_short() { sideburn_density(place) } else { 0.0 });
+        match self.comb {
+            Comb::FromParting(_) => {
+                let crowding = 1.0 + self.nearness_to_parting(place.x) * (PARTING_DENSITY - 1.0);
+                density * crowding / PARTING_DENSITY
+            }
+            Comb::ToTie if density > 0.0 => {
+                let over_m = over_hairline(place);
+                let fading = (over_m / SOFT_EDGE_M).min(1.0);
+                let crowding = 1.0 + (-(over_m / EDGE_M).powi(2)).exp() * (EDGE_DENSITY - 1.0);
+                fading * fading * crowding / EDGE_DENSITY
+            }
+            Comb::ToTie | Comb::FromWhorl | Comb::Out => density,
+        }
+    }
+
+    /// Returns 1 on the parting, falling to 0 within centimetres at both sides; 0 without one.
+    pub fn nearness_to_parting(&self, x: f32) -> f32 {
+        let Comb::FromParting(left) = self.comb else { return 0.0 };
+        (-((x - left) / PARTING_M).powi(2)).exp()
+    }
+
     /// Returns the side to which hair at a distance to the left of the middle is combed, metres: 1 for the left, -1 for
     /// the right of the parting; 1 without a parting.
     pub fn side_of_parting(&self, x: f32) -> f32 {
@@ -218,7 +261,7 @@ pub fn scalp_density(place: Vec3) -> f32 {
 }
 
 /// Returns the height of a place of the head over the hairline there, metres.
-pub fn over_hairline(place: Vec3) -> f32 {
+fn over_hairline(place: Vec3) -> f32 {
     let angle = angle_from_front(place);
     let upper = HAIRLINE.iter().position(|(at, _)| *at >= angle).unwrap_or(HAIRLINE.len() - 1).max(1);
     let ((a0, h0), (a1, h1)) = (HAIRLINE[upper - 1], HAIRLINE[upper]);
@@ -256,4 +299,22 @@ pub fn beard_density(place: Vec3) -> f32 {
     // It thins out towards the sides of the neck
     let front = ((z + 0.078) / 0.02 - ((-0.1 - y) / 0.02).clamp(0.0, 1.0)).clamp(0.0, 1.0);
     if is_skin { edge * front } else { 0.0 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn tied_hair_begins_sparse_and_is_dense_behind_its_edge() {
+        let tied = of_head(HairStyle::TiedBack).unwrap();
+        let at = |over_m: f32| {
+            let place = Vec3::new(0.0, HAIRLINE[0].1 + over_m, 0.03);
+            assert!((over_hairline(place) - over_m).abs() < 1e-6);
+            tied.root_density(place)
+        };
+        let crown = tied.root_density(Vec3::new(0.0, 0.15, -0.08));
+        assert!(at(-0.001) == 0.0 && at(0.003) < 0.2 * at(0.014), "{} {}", at(0.003), at(0.014));
+        assert!(at(0.02) > 1.2 * crown, "{} {crown}", at(0.02));
+    }
 }
