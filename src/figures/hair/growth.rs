@@ -346,10 +346,10 @@ fn follow(
     // Beside a parting some strands cross to the other side, and hide the skin between both
     let over_hairline = ((root.place.y - HAIRLINE_M) / CROSSING_FROM_M).clamp(0.0, 1.0);
     let crossing = CROSSING_M * over_hairline * style.nearness_to_parting(root.position.x) * random.bell();
-    let place = root.position + Vec3::X * crossing;
+    let beside = root.position + Vec3::X * crossing;
     // Guides on the other side of a parting, or of the shoulders, are no neighbours: they go another way.
-    let (guides, guide_roots) = guides.on_side(style.side_of_parting(place.x));
-    let near = guide_roots.nearest::<3>(place);
+    let (guides, guide_roots) = guides.on_side(style.side_of_parting(beside.x));
+    let near = guide_roots.nearest::<3>(beside);
     let first = &guides[near[0].1];
     let reach = |guide: &Guide, step: usize| guide.points[step] - guide.root.position;
     let goes_along = |guide: &Guide| {
