@@ -14,9 +14,9 @@ pub const COPPER: [[f32; 2]; 3] = [[0.362, 3.127], [1.015, 2.579], [1.246, 2.453
 /// Films: Application to Aluminum": 0.910, 0.915, 0.921.
 pub const ALUMINIUM: [[f32; 2]; 3] = [[1.322, 7.311], [1.011, 6.617], [0.683, 5.625]];
 
-/// Roughness of dry skin of any tone: its facets' slopes have a root mean square of 0.3, the square of this. Weyrich et al.
-/// 2006, "Analysis of Human Faces Using a Measurement-Based Skin Reflectance Model", find 0.25 to 0.45 by region of the
-/// face, and d'Eon and Luebke 2007, "Advanced Techniques for Realistic Real-Time Skin Rendering", use 0.3.
+/// Roughness of skin of any tone: its facets' slopes have a root mean square of 0.3, the square of this, which d'Eon and
+/// Luebke 2007, "Advanced Techniques for Realistic Real-Time Skin Rendering", use for the faces that Weyrich et al. 2006
+/// measured.
 const SKIN_ROUGHNESS: f32 = 0.55;
 
 /// A material preset.
