@@ -110,7 +110,7 @@ pub fn default_parts(skin: &Material, figure: &Figure) -> Vec<(String, Material)
     let age = ((figure.body.age_years - 40.0) / 50.0).clamp(0.0, 1.0);
     let white = MaterialPreset::Eye.material();
     let white = Material { base_color: white.base_color.map(|c| c * (1.0 - 0.12 * age)), ..white };
-    // Lips are skin with less melanin and more blood near the surface.
+    // Lips are skin with less melanin and more blood near the surface, and moist: a typical roughness.
     let lips = Material { base_color: [0.86 * r, 0.56 * g, 0.6 * b], roughness: 0.42, ..skin.clone() };
     let parts = [
         ("eyes", white),

@@ -4,7 +4,7 @@
 //! Regions are ellipsoids with soft edges on the base mesh. Their strengths are typical, not measured.
 
 use super::body_data::BodyData;
-use super::hair::{beard_density, brow_density, scalp_density};
+use super::hair::{beard_density, begins_sparse, brow_density, scalp_density};
 use super::random::Random;
 use crate::scene::{Beard, Figure, HairStyle};
 use glam::{Vec3, Vec3A};
@@ -24,7 +24,8 @@ const LIDS: Vec3 = Vec3::new(0.74, 0.6, 0.58);
 const ROOTS: Vec3 = Vec3::new(0.36, 0.33, 0.31);
 /// Factor between the roots of white hair, which pass more light.
 const WHITE_ROOTS: Vec3 = Vec3::new(0.72, 0.7, 0.68);
-/// Distances over which that of dense hair fades out at the hairline, and that of tied hair, which begins sparse, metres.
+/// Distances over which the factor between the roots fades out at the hairline, of hair that begins dense and of hair that
+/// begins sparse, metres.
 const ROOTS_BLUR_M: f32 = 0.004;
 const SPARSE_ROOTS_BLUR_M: f32 = 0.012;
 /// Factor between the roots of beard and brows.
@@ -144,7 +145,7 @@ fn region_color(place: Vec3, figure: &Figure) -> Vec3 {
     }
     let roots = ROOTS.lerp(WHITE_ROOTS, ((figure.body.age_years - 55.0) / 20.0).clamp(0.0, 1.0));
     if figure.hair != HairStyle::Bald {
-        let blur_m = if figure.hair == HairStyle::TiedBack { SPARSE_ROOTS_BLUR_M } else { ROOTS_BLUR_M };
+        let blur_m = if begins_sparse(figure.hair) { SPARSE_ROOTS_BLUR_M } else { ROOTS_BLUR_M };
         color *= Vec3::ONE.lerp(roots, blurred(scalp_density, place, blur_m));
     }
     let beard = match figure.beard {

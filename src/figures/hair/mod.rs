@@ -18,7 +18,7 @@ mod torso_surface;
 
 pub use face_hair::brow_density;
 pub use hair_body::HairBody;
-pub use style::{beard_density, scalp_density};
+pub use style::{beard_density, begins_sparse, scalp_density};
 
 use crate::scene::{Figure, StrandPoint, Strands};
 

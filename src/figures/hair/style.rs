@@ -221,6 +221,11 @@ pub fn of_head(hair: HairStyle) -> Option<Style> {
     })
 }
 
+/// Returns true for a style whose roots become dense within centimetres behind the hairline, and not within millimetres.
+pub fn begins_sparse(hair: HairStyle) -> bool {
+    of_head(hair).is_some_and(|style| style.comb == Comb::ToTie)
+}
+
 /// Returns the style of a beard; none for a shaved face.
 pub fn of_beard(beard: Beard) -> Option<Style> {
     Some(match beard {
