@@ -16,14 +16,14 @@ use glam::{Affine3A, Vec2, Vec3};
 use std::sync::Arc;
 
 /// Names of a figure's parts, each with a material of its own.
-pub const PARTS: [&str; 12] =
-    ["skin", "eyes", "iris", "pupil", "teeth", "tongue", "top", "bottom", "shoes", "lips", "nails", "mouth"];
+pub const PARTS: [&str; 11] =
+    ["skin", "eyes", "iris", "teeth", "tongue", "top", "bottom", "shoes", "lips", "nails", "mouth"];
 const SKIN: u8 = 0;
 const EYES: u8 = 1;
 /// Helper meshes of what is inside of the mouth, with their parts.
-const INSIDE_MOUTH: [(&str, u8); 3] = [("helper-upper-teeth", 4), ("helper-lower-teeth", 4), ("helper-tongue", 5)];
+const INSIDE_MOUTH: [(&str, u8); 3] = [("helper-upper-teeth", 3), ("helper-lower-teeth", 3), ("helper-tongue", 4)];
 /// Regions of the skin that are parts, with their masks.
-const REGIONS: [(u8, &str); 3] = [(9, "lips"), (10, "fingernails"), (11, "inside-mouth")];
+const REGIONS: [(u8, &str); 3] = [(8, "lips"), (9, "fingernails"), (10, "inside-mouth")];
 /// Skin reaches this far below the edge of a garment, metres.
 const OVERLAP_M: f32 = 0.03;
 
@@ -97,9 +97,9 @@ pub fn with_other_gaze(data: &BodyData, built: &FigureMeshes, figure: &Figure) -
 /// Returns the part of a garment.
 fn garment_part(garment: Garment) -> u8 {
     match garment {
-        Garment::Top => 6,
-        Garment::Bottom => 7,
-        Garment::Shoe => 8,
+        Garment::Top => 5,
+        Garment::Bottom => 6,
+        Garment::Shoe => 7,
     }
 }
 

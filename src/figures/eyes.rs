@@ -1,37 +1,23 @@
-//! Eyes: a white ball with a bulging cornea that shows the lights. Iris and pupil are painted on the cornea, so that a
-//! portrait is traced without refraction. Below its gloss the iris has the normals of what lies there: a flat disc with
-//! fibres, so that the side opposite to a light is the brighter one, as behind a real cornea.
+//! Eyes: a white ball with a bulging cornea that shows the lights. Iris and pupil are a picture on the flat base of the
+//! cornea, seen through it by refraction (see [`crate::math::Dome`]), so that a portrait is traced without rays in glass.
+//! The iris has the normals of a flat disc with fibres, so that the side opposite to a light is the brighter one, as behind
+//! a real cornea.
 //!
 //! Sizes are those of Atchison and Smith 2000, "Optics of the Human Eye": a cornea of 7.8 mm radius and an iris of
 //! 11.8 mm diameter. The balls of the base mesh, round which its lids lie, have a radius of 13.8 mm instead of 12 mm, and
 //! those of adult figures 12.5 to 15 mm; the iris has the same size in all of them.
 
-use super::random::Random;
+use super::iris::{CORNEA, IRIS_M, IrisFibres, PUPIL};
 use super::subdivide::QuadMesh;
-use crate::scene::Texture;
 use glam::{Affine3A, Vec2, Vec3};
 use std::f32::consts::TAU;
 
 /// Radius of an eyeball of the base mesh, metres.
 pub const BALL_M: f32 = 0.0138;
-/// Radius of the iris, metres.
-const IRIS_M: f32 = 0.0059;
 /// Greatest radius of the iris, in radii of the ball: that of people, whose balls have a radius of 12 mm.
 const GREATEST_IRIS: f32 = IRIS_M / 0.012;
-/// Radius of the pupil in studio light, in radii of the iris.
-const PUPIL: f32 = 0.0018 / IRIS_M;
-/// Radius of the cornea's sphere, in radii of the iris.
-const CORNEA: f32 = 0.0078 / IRIS_M;
 /// Vertices around.
 const AROUND: usize = 96;
-/// Rings of the iris.
-const IRIS_RINGS: u32 = 12;
-/// Size of the picture of the iris's relief: around, and from its edge to the pupil, pixels.
-const RELIEF_SIZE: [usize; 2] = [256, 64];
-/// Angle by which the edge of the iris leans inwards: the cornea focuses light onto the opposite side. Typical.
-const HOLLOW_RAD: f32 = 0.25;
-/// Greatest slope of the fibres of the iris, across them. Typical.
-const FIBRE_SLOPE: f32 = 0.35;
 
 /// The cornea of an eye: a cap of a sphere.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -46,14 +32,14 @@ pub struct Cornea {
 
 impl Cornea {
     /// Sine of the angle between the axis and the edge of the cap, where the iris ends.
-    pub const EDGE_SINE: f32 = 1.0 / CORNEA;
+    pub const EDGE_SINE: f32 = 1.0 / CORNEA.radius;
 
     /// Returns the cornea of an eye; see [`add_eye`].
     pub fn new(world_from_eye: Affine3A) -> Cornea {
         let axis = world_from_eye.transform_vector3(Vec3::Z);
         let iris = iris_radius(world_from_eye);
         let centre = world_from_eye.transform_point3(Vec3::Z * cornea_centre(iris));
-        Cornea { centre, radius: CORNEA * iris * axis.length(), axis: axis.normalize_or(Vec3::Z) }
+        Cornea { centre, radius: CORNEA.radius * iris * axis.length(), axis: axis.normalize_or(Vec3::Z) }
     }
 }
 
@@ -66,7 +52,7 @@ fn iris_radius(world_from_eye: Affine3A) -> f32 {
 /// Returns the distance from the ball's centre to that of the cornea's sphere in front of it, by the radius of the iris;
 /// both in radii of the ball.
 fn cornea_centre(iris: f32) -> f32 {
-    (1.0 - iris * iris).sqrt() - iris * (CORNEA * CORNEA - 1.0).sqrt()
+    (1.0 - iris * iris).sqrt() - iris * (CORNEA.radius * CORNEA.radius - 1.0).sqrt()
 }
 
 /// Parts of an eye, in the order of [`EyePart`].
@@ -74,16 +60,14 @@ fn cornea_centre(iris: f32) -> f32 {
 pub enum EyePart {
     /// The white.
     White,
-    /// The iris.
+    /// The cornea over iris and pupil.
     Iris,
-    /// The pupil.
-    Pupil,
 }
 
 /// Appends an eye, and returns the colours of its vertices, factors of the base colours. `world_from_eye` takes a ball of
 /// radius 1 that looks along +Z to its place; `part` numbers the parts.
 pub fn add_eye(mesh: &mut QuadMesh, world_from_eye: Affine3A, part: impl Fn(EyePart) -> u8) -> Vec<Vec3> {
-    let first = mesh.positions.len();
+    let (first, first_quad) = (mesh.positions.len(), mesh.quads.len());
     let iris_radius = iris_radius(world_from_eye);
     // The white, from the back to the edge of the iris
     let limit = iris_radius.asin();
@@ -92,25 +76,26 @@ pub fn add_eye(mesh: &mut QuadMesh, world_from_eye: Affine3A, part: impl Fn(EyeP
         Vec2::new(angle.sin(), angle.cos())
     });
     add_rings(mesh, world_from_eye, part(EyePart::White), white);
-    // The cornea: a steeper sphere through the edge of the iris, which is painted on it, as is the pupil
+    // The cornea: a steeper sphere through the edge of the iris
     let centre = cornea_centre(iris_radius);
-    let cap = |from: f32, to: f32, steps: u32| {
-        let (from, to) = ((from / CORNEA).asin(), (to / CORNEA).asin());
-        (0..=steps).map(move |i| {
-            let angle = from + (to - from) * i as f32 / steps as f32;
-            Vec2::new(0.0, centre) + iris_radius * CORNEA * Vec2::new(angle.sin(), angle.cos())
-        })
+    let cap = |radius: f32| {
+        let angle = (radius / CORNEA.radius).asin();
+        Vec2::new(0.0, centre) + iris_radius * CORNEA.radius * Vec2::new(angle.sin(), angle.cos())
     };
-    let iris = mesh.positions.len();
-    add_rings(mesh, world_from_eye, part(EyePart::Iris), cap(1.0, PUPIL, IRIS_RINGS));
-    let pupil = mesh.positions.len();
-    add_rings(mesh, world_from_eye, part(EyePart::Pupil), cap(PUPIL, 0.0, 4));
-    // Colours by the place on the eye
+    let cornea = mesh.positions.len();
+    let over_iris = (0..=12).map(|i| 1.0 + (PUPIL - 1.0) * i as f32 / 12.0);
+    let over_pupil = [0.97, 0.75, 0.5, 0.25, 0.0].map(|part| PUPIL * part);
+    add_rings(mesh, world_from_eye, part(EyePart::Iris), over_iris.chain(over_pupil).map(cap));
+    // Planar texture coordinates: the iris fills the picture
     let to_eye = world_from_eye.inverse();
+    let place = |position: Vec3| to_eye.transform_point3(position).truncate() / iris_radius;
+    let quads = mesh.quads[first_quad..].iter();
+    mesh.uvs.extend(quads.map(|quad| quad.map(|v| (place(mesh.positions[v as usize]) + Vec2::ONE) / 2.0)));
+    // The colours of vertices are those of materials without the picture: iris and pupil are painted on the cornea
+    let fibres = IrisFibres::new(PUPIL);
     let color = |(i, position): (usize, &Vec3)| match first + i {
-        vertex if vertex < iris => white_color(to_eye.transform_point3(*position), iris_radius),
-        vertex if vertex < pupil => iris_color((vertex - iris) % AROUND, (vertex - iris) / AROUND),
-        _ => Vec3::ONE,
+        vertex if vertex < cornea => white_color(to_eye.transform_point3(*position), iris_radius),
+        _ => fibres.color(place(*position)),
     };
     mesh.positions[first..].iter().enumerate().map(color).collect()
 }
@@ -124,43 +109,7 @@ fn white_color(point: Vec3, iris_radius: f32) -> Vec3 {
     vessels * (1.0 - 0.45 * edge)
 }
 
-/// Returns the colour of a vertex of the iris: dark at its edge (the limbal ring), with fibres from there to the pupil,
-/// of which those near the pupil are lighter.
-fn iris_color(around: usize, ring: usize) -> Vec3 {
-    let outwards = 1.0 - ring as f32 / IRIS_RINGS as f32;
-    let limbus = ((outwards - 0.78) / 0.22).clamp(0.0, 1.0);
-    let mut random = Random::new(around as u32, 7);
-    let [fibre, collarette] = [random.unit(), random.unit()];
-    let inner = 1.0 - ((outwards - 0.1) / (0.2 + 0.15 * collarette)).clamp(0.0, 1.0);
-    let streak = 0.45 + 0.35 * fibre;
-    // The inner zone is lighter and warmer.
-    let tint = Vec3::ONE.lerp(Vec3::new(1.0, 0.8, 0.45), inner) * (streak + 0.25 * inner);
-    // The pupil's edge is a thin dark line.
-    let rim = if ring == IRIS_RINGS as usize { 0.4 } else { 1.0 };
-    tint * rim * (1.0 - 0.8 * limbus)
-}
-
-/// Draws the normals of the iris relative to those of the cornea over it: U goes round, V from the edge to the pupil.
-pub fn iris_relief() -> Texture {
-    let [width, height] = RELIEF_SIZE;
-    let edge_of = |part: f32| (part / CORNEA).asin();
-    let mut random = Random::new(0, 11);
-    let fibres: Vec<f32> = (0..width).map(|_| FIBRE_SLOPE * (2.0 * random.unit() - 1.0)).collect();
-    let pixel = |index: usize| {
-        // Rows run down, V runs up
-        let v = 1.0 - ((index / width) as f32 + 0.5) / height as f32;
-        let angle = edge_of(1.0) + (edge_of(PUPIL) - edge_of(1.0)) * v;
-        let outwards = (CORNEA * angle.sin() - PUPIL) / (1.0 - PUPIL);
-        let inwards = angle + HOLLOW_RAD * outwards;
-        // Fibres end before the edge
-        let across = fibres[index % width] * (4.0 * outwards * (1.0 - outwards)).clamp(0.0, 1.0);
-        let normal = Vec3::new(across, inwards.sin(), inwards.cos()).normalize_or(Vec3::Z);
-        normal.to_array().map(|c| ((c + 1.0) * 127.5).round() as u8)
-    };
-    Texture::opaque(width as u32, height as u32, (0..width * height).map(pixel).collect())
-}
-
-/// Appends a surface of revolution about Z from points (radius, z), outside to the front.
+/// Appends a surface of revolution about Z from points (radius, z), outside to the front, without texture coordinates.
 fn add_rings(mesh: &mut QuadMesh, world: Affine3A, part: u8, profile: impl Iterator<Item = Vec2>) {
     let first = mesh.positions.len() as u32;
     let mut rings = 0;
@@ -176,9 +125,6 @@ fn add_rings(mesh: &mut QuadMesh, world: Affine3A, part: u8, profile: impl Itera
         for k in 0..around {
             let [a, b] = [ring * around + k, ring * around + (k + 1) % around].map(|v| v + first);
             mesh.quads.push([a, b, b + around, a + around]);
-            let [u, v] = [k as f32 / around as f32, ring as f32 / (rings - 1) as f32];
-            let (du, dv) = (1.0 / around as f32, 1.0 / (rings - 1) as f32);
-            mesh.uvs.push([Vec2::new(u, v), Vec2::new(u + du, v), Vec2::new(u + du, v + dv), Vec2::new(u, v + dv)]);
             mesh.parts.push(part);
         }
     }
@@ -188,7 +134,6 @@ fn add_rings(mesh: &mut QuadMesh, world: Affine3A, part: u8, profile: impl Itera
 mod tests {
     use super::*;
     use crate::figures::{READY, corneas};
-    use crate::math::{decode_normal, position_derivatives, tilted_normal};
 
     #[test]
     fn corneas_have_the_same_size_in_large_and_small_heads() {
@@ -202,26 +147,19 @@ mod tests {
     }
 
     #[test]
-    fn the_normals_of_the_iris_lean_towards_the_pupil_and_those_of_the_cornea_away() {
+    fn the_cornea_is_the_dome_over_the_picture_of_the_iris() {
         let mut mesh = QuadMesh::default();
         add_eye(&mut mesh, Affine3A::IDENTITY, |part| part as u8);
-        let (normals, relief) = (mesh.normals(), iris_relief());
-        let mut count = 0;
+        let normals = mesh.normals();
         for (index, quad) in mesh.quads.iter().enumerate().filter(|(i, _)| mesh.parts[*i] == EyePart::Iris as u8) {
-            let [a, b, _, d] = quad.map(|v| mesh.positions[v as usize]);
-            let uvs = mesh.uvs[index];
-            let derivatives = position_derivatives([b - a, d - a], [uvs[1] - uvs[0], uvs[3] - uvs[0]]).unwrap();
-            let middle = (uvs[0] + uvs[2]) / 2.0;
-            let [x, y] = [middle.x * RELIEF_SIZE[0] as f32, (1.0 - middle.y) * RELIEF_SIZE[1] as f32];
-            let code = relief.rgb[y as usize * RELIEF_SIZE[0] + x as usize].map(|c| f32::from(c) / 255.0);
-            let cornea = (normals[quad[0] as usize] + normals[quad[2] as usize]).normalize();
-            let iris = tilted_normal(cornea, derivatives, decode_normal(code.into(), 1.0));
-            let outwards = ((a + b) / 2.0).with_z(0.0).normalize();
-            assert!(cornea.dot(outwards) > 0.2, "{cornea} at {a}");
-            // Within the rounding of the picture and of the ring's middle
-            assert!((-0.3..0.03).contains(&iris.dot(outwards)) && iris.z > 0.85, "{iris} at {a}");
-            count += 1;
+            for (vertex, uv) in quad.iter().zip(mesh.uvs[index]) {
+                let place = uv * 2.0 - Vec2::ONE;
+                assert!(place.length() < 1.0001, "{place}");
+                // The mesh has the normals of the dome but at its edge, where the mesh ends
+                let expected = CORNEA.frame(place).z_axis;
+                let off = normals[*vertex as usize].angle_between(expected).to_degrees();
+                assert!(place.length() > 0.99 || off < 1.5, "{off} degrees at {place}");
+            }
         }
-        assert_eq!(count, AROUND * IRIS_RINGS as usize);
     }
 }

@@ -1,5 +1,6 @@
 //! The materials of a figure's parts, and skin tones.
 
+use super::iris::CORNEA;
 use super::skin_colors::mean_of_blotches;
 use super::skin_textures::skin_textures;
 use crate::scene::{BuiltinTexture, Figure, Material, MaterialPreset, MaterialTextures, Object, Shape, TextureRef};
@@ -78,12 +79,17 @@ pub const EYE_COLORS: [EyeColor; 6] = [
 impl EyeColor {
     /// Returns the material of the iris.
     pub fn material(&self) -> Material {
-        let textures = MaterialTextures {
-            normal: Some(TextureRef::Builtin(BuiltinTexture::IrisRelief)),
-            smooth_gloss: true,
-            ..MaterialTextures::default()
-        };
-        Material { base_color: self.base_color, textures, ..MaterialPreset::Eye.material() }
+        Material { base_color: self.base_color, textures: iris_textures(), ..MaterialPreset::Eye.material() }
+    }
+}
+
+/// Returns the textures of the iris, under the cornea.
+pub fn iris_textures() -> MaterialTextures {
+    MaterialTextures {
+        base_color: Some(TextureRef::Builtin(BuiltinTexture::Iris)),
+        normal: Some(TextureRef::Builtin(BuiltinTexture::IrisRelief)),
+        dome_radius: CORNEA.radius,
+        ..MaterialTextures::default()
     }
 }
 
@@ -115,7 +121,6 @@ pub fn default_parts(skin: &Material, figure: &Figure) -> Vec<(String, Material)
     let parts = [
         ("eyes", white),
         ("iris", iris.material()),
-        ("pupil", gloss([0.005; 3])),
         ("teeth", Material { base_color: [0.62, 0.58, 0.49], roughness: 0.25, ..gloss([0.0; 3]) }),
         ("tongue", Material { base_color: [0.35, 0.12, 0.1], roughness: 0.3, ..gloss([0.0; 3]) }),
         ("top", cloth([0.16, 0.2, 0.26])),

@@ -19,6 +19,7 @@ mod face;
 mod garments;
 mod gaze;
 mod hair;
+mod iris;
 mod joints;
 mod makehuman;
 mod materials;
@@ -45,6 +46,7 @@ pub use joints::{Joint, PosableBody};
 pub use makehuman::read_body;
 pub use materials::{
     EYE_COLORS, EyeColor, HAIR_COLORS, SKIN_TONES, SkinTone, default_parts, give_eyes, give_hair, give_skin,
+    iris_textures,
 };
 pub use named_poses::{NamedExpression, NamedPose};
 pub use ready::{READY, ReadyFigure, randomised};

@@ -3,7 +3,7 @@
 //! Regions, and the furrows some 0.9 mm apart whose slopes have a root mean square of 0.1, are typical, not measured.
 
 use super::body_data::BodyData;
-use super::eyes::iris_relief;
+use super::iris::{iris_picture, iris_relief};
 use super::random::Random;
 use super::skin_colors::{Region, factor_at, region};
 use crate::scene::{BuiltinTexture, MaterialTextures, Texture, TextureRef, TextureSlot};
@@ -65,10 +65,12 @@ pub fn builtin_texture(texture: BuiltinTexture) -> Arc<Texture> {
     static GLOSS: OnceLock<Arc<Texture>> = OnceLock::new();
     static RELIEF: OnceLock<Arc<Texture>> = OnceLock::new();
     static IRIS: OnceLock<Arc<Texture>> = OnceLock::new();
+    static IRIS_RELIEF: OnceLock<Arc<Texture>> = OnceLock::new();
     match texture {
         BuiltinTexture::SkinGloss => kept(&GLOSS, || skin_gloss(BodyData::shipped())),
         BuiltinTexture::SkinRelief => kept(&RELIEF, skin_relief),
-        BuiltinTexture::IrisRelief => kept(&IRIS, iris_relief),
+        BuiltinTexture::Iris => kept(&IRIS, iris_picture),
+        BuiltinTexture::IrisRelief => kept(&IRIS_RELIEF, iris_relief),
     }
 }
 

@@ -5,7 +5,7 @@
 //! so that mirrored and turned charts need no tangents in the mesh.
 
 use super::safe_sqrt;
-use glam::{Vec2, Vec3};
+use glam::{Mat3, Vec2, Vec3};
 
 /// How much further than needed a normal is bent.
 const BEND_MARGIN: f32 = 1e-3;
@@ -27,16 +27,19 @@ pub fn decode_normal(rgb: Vec3, scale: f32) -> Vec3 {
     Vec3::new(direction.x * scale, direction.y * scale, direction.z)
 }
 
-/// Returns a unit normal tilted to a direction in tangent space, for the derivatives of the position. Returns the normal
-/// itself where the frame is degenerate.
-pub fn tilted_normal(normal: Vec3, [du, dv]: [Vec3; 2], direction: Vec3) -> Vec3 {
-    let tangent = (du - normal * normal.dot(du)).normalize_or_zero();
+/// Returns the tangent frame of a unit normal for the derivatives of the position: unit tangents along U and, across it,
+/// along V, and the normal. Returns none where it is degenerate.
+pub fn tangent_frame(normal: Vec3, [du, dv]: [Vec3; 2]) -> Option<Mat3> {
+    let tangent = (du - normal * normal.dot(du)).try_normalize()?;
     let bitangent = normal.cross(tangent);
     let bitangent = if bitangent.dot(dv) < 0.0 { -bitangent } else { bitangent };
-    if tangent == Vec3::ZERO {
-        return normal;
-    }
-    (tangent * direction.x + bitangent * direction.y + normal * direction.z).try_normalize().unwrap_or(normal)
+    Some(Mat3::from_cols(tangent, bitangent, normal))
+}
+
+/// Returns a unit normal tilted to a direction in tangent space, for the derivatives of the position. Returns the normal
+/// itself where the frame is degenerate.
+pub fn tilted_normal(normal: Vec3, derivatives: [Vec3; 2], direction: Vec3) -> Vec3 {
+    tangent_frame(normal, derivatives).and_then(|frame| (frame * direction).try_normalize()).unwrap_or(normal)
 }
 
 /// Bends a shading normal towards the geometric normal as far as is needed for the mirror direction of `view_dir` to lie

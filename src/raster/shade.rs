@@ -211,11 +211,21 @@ impl<'a> FragmentShader<'a> {
         triangle: TexturedTriangle<'_>,
         vertices: [&VertexAttributes; 3],
     ) {
+        let has_normals = matches!(self.frame.shading, Shading::Lambert | Shading::BlinnPhong);
+        let dome = triangle.dome(vertices).filter(|_| has_normals);
         for i in span.pixels.clone() {
             let over_w = span.start + span.step * (i - span.pixels.start) as f32;
-            row.factors[i] = triangle.factors(over_w, &self.frame.linear_from_srgb);
+            if let Some(dome) = &dome {
+                let (position, normal) = (row.first.at(i), row.second.at(i));
+                let (factors, normal) = dome.seen(over_w, position, normal, &self.frame.linear_from_srgb);
+                row.factors[i] = factors;
+                row.second.set(i, normal);
+                row.color.set(i, Vec3::ONE);
+            } else {
+                row.factors[i] = triangle.factors(triangle.uvs_at(over_w), &self.frame.linear_from_srgb);
+            }
         }
-        if matches!(self.frame.shading, Shading::Lambert | Shading::BlinnPhong) {
+        if has_normals && dome.is_none() {
             triangle.tilt_normals(span, vertices, |i, tilted| {
                 row.second.set(i, tilted(row.first.at(i), row.second.at(i)));
             });

@@ -3,7 +3,7 @@
 use super::gbuffer_row::{Span, VertexAttributes};
 use super::geometry::Surface;
 use super::surface_texture::PixelFactors;
-use crate::math::{decode_normal, position_derivatives, tilted_normal};
+use crate::math::{Dome, decode_normal, position_derivatives, tangent_frame, tilted_normal};
 use crate::scene::{Mesh, TextureSlot};
 use glam::{Vec2, Vec3};
 
@@ -23,14 +23,13 @@ impl<'a> TexturedTriangle<'a> {
     }
 
     /// Returns both sets of texture coordinates at barycentric coordinates, which may be over w.
-    fn uvs_at(&self, over_w: Vec3) -> [Vec2; 2] {
+    pub fn uvs_at(&self, over_w: Vec3) -> [Vec2; 2] {
         let weights = over_w / over_w.element_sum();
         self.uvs.map(|[a, b, c]| a * weights.x + b * weights.y + c * weights.z)
     }
 
-    /// Returns the factors of the material at barycentric coordinates over w.
-    pub fn factors(&self, over_w: Vec3, linear_from_srgb: &[f32; 256]) -> PixelFactors {
-        let uvs = self.uvs_at(over_w);
+    /// Returns the factors of the material at both sets of texture coordinates.
+    pub fn factors(&self, uvs: [Vec2; 2], linear_from_srgb: &[f32; 256]) -> PixelFactors {
         let rgb = |slot: TextureSlot| {
             self.surface.textures[slot as usize].as_ref().map_or(Vec3::ONE, |map| map.rgb(uvs, linear_from_srgb))
         };
@@ -76,6 +75,16 @@ impl<'a> TexturedTriangle<'a> {
         position_derivatives([b - a, c - a], [uvs[1] - uvs[0], uvs[2] - uvs[0]])
     }
 
+    /// Returns the dome over the textures, for the triangle's vertices relative to the eye; none without one.
+    pub fn dome(&self, vertices: [&VertexAttributes; 3]) -> Option<DomedTriangle<'a>> {
+        let dome = self.surface.material.dome()?;
+        let [a, b, c] = vertices.map(|[x, y, z, ..]| Vec3::new(*x, *y, *z));
+        let [uv_a, uv_b, uv_c] = self.uvs[0];
+        let derivatives = position_derivatives([b - a, c - a], [uv_b - uv_a, uv_c - uv_a])?;
+        let geometric_normal = (b - a).cross(c - a).normalize_or(Vec3::Y);
+        Some(DomedTriangle { triangle: *self, dome, derivatives, geometric_normal })
+    }
+
     /// Returns the tilted normal of each pixel of a span: for its index and its normal of any length. `vertices` are those
     /// of the triangle, relative to the eye.
     pub fn tilt_normals(
@@ -95,6 +104,45 @@ impl<'a> TexturedTriangle<'a> {
                 self.tilted(normal, geometric_normal, (-position).normalize_or_zero(), over_w, derivatives)
             });
         }
+    }
+}
+
+/// A triangle of a dome, through which its textures are seen.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct DomedTriangle<'a> {
+    triangle: TexturedTriangle<'a>,
+    dome: Dome,
+    /// Of the position by the texture coordinates.
+    derivatives: [Vec3; 2],
+    geometric_normal: Vec3,
+}
+
+impl DomedTriangle<'_> {
+    /// Returns what is seen at barycentric coordinates over w: factors of the material, and the normal below the dome. The
+    /// position is relative to the eye; the normal may have any length.
+    pub fn seen(
+        &self,
+        over_w: Vec3,
+        position: Vec3,
+        normal: Vec3,
+        linear_from_srgb: &[f32; 256],
+    ) -> (PixelFactors, Vec3) {
+        let [uv, second_uv] = self.triangle.uvs_at(over_w);
+        let view_dir = (-position).normalize_or_zero();
+        let side = if self.geometric_normal.dot(view_dir) < 0.0 { -1.0 } else { 1.0 };
+        let normal = normal.normalize_or(self.geometric_normal);
+        let outward = if normal.dot(self.geometric_normal) < 0.0 { -normal } else { normal };
+        let Some(frame) = tangent_frame(outward, self.derivatives) else {
+            return (self.triangle.factors([uv, second_uv], linear_from_srgb), normal);
+        };
+        let (uv, world_from_base) = self.dome.seen(uv, frame, view_dir);
+        let uvs = [uv, second_uv];
+        let Surface { material, textures, .. } = self.triangle.surface;
+        let tilt = textures[TextureSlot::Normal as usize]
+            .as_ref()
+            .map_or(Vec3::Z, |map| decode_normal(map.rgb(uvs, &[0.0; 256]), material.textures.normal_scale));
+        let below = world_from_base * tilt.normalize_or(Vec3::Z);
+        (self.triangle.factors(uvs, linear_from_srgb), below * side)
     }
 }
 

@@ -43,7 +43,7 @@ pub struct RenderPlan {
     pub refraction: bool,
     /// Light scatters under surfaces.
     pub subsurface: bool,
-    /// Normal maps tilt shading normals.
+    /// Normal maps, or the flat bases of domes, tilt shading normals.
     pub normal_maps: bool,
     /// Brushed surfaces need their tangents.
     pub tangents: bool,
@@ -173,9 +173,10 @@ impl RenderPlan {
         } else {
             "nothing soft under its surface: no walks".to_owned()
         });
-        let normal_maps = materials.iter().any(|material| material.texture(TextureSlot::Normal).is_some());
+        let has_relief = |m: &TracedMaterial| m.texture(TextureSlot::Normal).is_some() || m.dome.is_some();
+        let normal_maps = materials.iter().any(has_relief);
         if normal_maps {
-            reasons.push("normal maps: shading normals are tilted".to_owned());
+            reasons.push("normal maps or domes: shading normals are tilted".to_owned());
         }
         let tangents = materials.iter().any(TracedMaterial::is_brushed);
         if tangents {

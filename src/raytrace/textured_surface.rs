@@ -5,7 +5,7 @@ use super::bsdf::{MaterialPoint, TextureFactors, TracedMaterial};
 use super::geometry::SurfaceInteraction;
 use super::render_scene::RenderScene;
 use super::texture::TextureMap;
-use crate::math::{Ray, bend_above, decode_normal, tilted_normal};
+use crate::math::{Ray, bend_above, decode_normal, tangent_frame};
 use crate::scene::{Alpha, TextureSlot};
 use glam::{Affine2, Vec3};
 
@@ -38,25 +38,38 @@ impl RenderScene {
         surface.tangent = along_u * cos + across_u * sin;
     }
 
-    /// Replaces the shading normal by that of the normal map, bent so that the mirror direction of the ray stays above
-    /// the surface. The diffuse lobe has no such direction: it keeps the normal of the map, or relief that leans away
-    /// from the viewer would be lit as if it faced him. Light that comes out of a soft surface was spread under it, farther
-    /// than relief is wide: it has the normal without the map. A smooth gloss keeps the shading normal.
+    /// Replaces the shading normal by that of the normal map or of the picture under a dome, bent so that the mirror
+    /// direction of the ray stays above the surface. The diffuse lobe has no such direction: it keeps the normal of the map,
+    /// or relief that leans away from the viewer would be lit as if it faced him. Light that comes out of a soft surface was
+    /// spread under it, farther than relief is wide: it has the normal without the map. A smooth gloss keeps the shading
+    /// normal.
     fn apply_normal_map(&self, surface: &mut SurfaceInteraction, direction: Vec3, hit: &Hit) {
         let material = self.material_of(surface);
-        let (Some(map), Primitive::Triangle(triangle)) = (self.texture(material, TextureSlot::Normal), &hit.primitive)
-        else {
+        let map = self.texture(material, TextureSlot::Normal);
+        let Primitive::Triangle(triangle) = &hit.primitive else { return };
+        if map.is_none() && material.dome.is_none() {
+            return;
+        }
+        let instance = &self.aggregate.instances()[hit.instance as usize];
+        let (second_uvs, picture_from_mesh) = match (material.dome, map) {
+            (None, Some(map)) => (map.uses_second_uvs(), map.picture_from_mesh()),
+            _ => (false, &Affine2::IDENTITY),
+        };
+        let derivatives = instance.position_derivatives(triangle.triangle, second_uvs, picture_from_mesh);
+        let Some(frame) = derivatives.and_then(|derivatives| tangent_frame(surface.normal, derivatives)) else {
             return;
         };
-        let instance = &self.aggregate.instances()[hit.instance as usize];
-        let derivatives =
-            instance.position_derivatives(triangle.triangle, map.uses_second_uvs(), map.picture_from_mesh());
-        let Some(derivatives) = derivatives else { return };
-        let tilt = decode_normal(map.at_surface(surface), material.normal_scale);
-        let relief_normal = tilted_normal(surface.normal, derivatives, tilt);
+        let view_dir = -direction.normalize_or_zero();
+        // Under a dome the textures are those of what is seen on its flat base, which has no colours of vertices
+        let world_from_map = material.dome.map_or(frame, |dome| {
+            let (uv, world_from_base) = dome.seen(surface.uv, frame, view_dir);
+            (surface.uv, surface.color) = (uv, Vec3::ONE);
+            world_from_base
+        });
+        let tilt = map.map_or(Vec3::Z, |map| decode_normal(map.at_surface(surface), material.normal_scale));
+        let relief_normal = (world_from_map * tilt).try_normalize().unwrap_or(world_from_map.z_axis);
         // From behind, the same relief is seen from its back
         let side = if direction.dot(surface.geometric_normal) > 0.0 { -1.0 } else { 1.0 };
-        let view_dir = -direction.normalize_or_zero();
         let normal = bend_above(relief_normal * side, surface.geometric_normal * side, view_dir) * side;
         let is_soft = self.plan.subsurface && material.extinction_per_m().is_some();
         surface.relief_normal = if is_soft { surface.normal } else { relief_normal };

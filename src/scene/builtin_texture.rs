@@ -7,14 +7,17 @@ pub enum BuiltinTexture {
     SkinGloss,
     /// Fine relief of skin, a square of [`BuiltinTexture::RELIEF_M`] that repeats, for [`super::TextureSlot::Normal`].
     SkinRelief,
-    /// Relief of the iris for [`super::TextureSlot::Normal`]: U runs round the eye, V from its edge to the pupil.
+    /// Colours of iris and pupil for [`super::TextureSlot::BaseColor`], factors of that of the iris. The iris fills the
+    /// picture.
+    Iris,
+    /// Relief of the iris for [`super::TextureSlot::Normal`], as [`BuiltinTexture::Iris`] lies.
     IrisRelief,
 }
 
 impl BuiltinTexture {
     /// All variants.
-    pub const ALL: [BuiltinTexture; 3] =
-        [BuiltinTexture::SkinGloss, BuiltinTexture::SkinRelief, BuiltinTexture::IrisRelief];
+    pub const ALL: [BuiltinTexture; 4] =
+        [BuiltinTexture::SkinGloss, BuiltinTexture::SkinRelief, BuiltinTexture::Iris, BuiltinTexture::IrisRelief];
 
     /// Side of the square that [`BuiltinTexture::SkinRelief`] shows, metres.
     pub const RELIEF_M: f32 = 0.024;
@@ -24,6 +27,7 @@ impl BuiltinTexture {
         match self {
             BuiltinTexture::SkinGloss => "Skin gloss",
             BuiltinTexture::SkinRelief => "Skin relief",
+            BuiltinTexture::Iris => "Iris",
             BuiltinTexture::IrisRelief => "Iris relief",
         }
     }
@@ -33,6 +37,7 @@ impl BuiltinTexture {
         match self {
             BuiltinTexture::SkinGloss => "builtin:skin-gloss",
             BuiltinTexture::SkinRelief => "builtin:skin-relief",
+            BuiltinTexture::Iris => "builtin:iris",
             BuiltinTexture::IrisRelief => "builtin:iris-relief",
         }
     }

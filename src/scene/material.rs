@@ -1,6 +1,7 @@
 //! Materials: diffuse, metal, dielectric, glass and emissive surfaces in one model.
 
 use super::{Anisotropy, Clearcoat, Fibre, MaterialTextures, Sheen};
+use crate::math::Dome;
 
 /// Surface properties. Colours are scene-linear RGB with Rec.709 primaries.
 #[derive(Clone, Debug, PartialEq)]
@@ -118,6 +119,23 @@ impl Material {
     /// surfaces have no such light.
     pub fn is_translucent(&self) -> bool {
         self.translucency > 0.0 && self.transmission == 0.0 && self.metallic < 1.0
+    }
+
+    /// Returns the clear dome over the textures; none without any.
+    pub fn dome(&self) -> Option<Dome> {
+        let radius = self.textures.dome_radius;
+        let is_over_a_picture = radius > 0.0 && self.textures.iter().next().is_some();
+        is_over_a_picture.then(|| Dome { radius: radius.max(1.0), ior: self.ior })
+    }
+
+    /// Returns true if the gloss lies over the relief, with the normal of the mesh.
+    pub fn has_smooth_gloss(&self) -> bool {
+        self.textures.smooth_gloss || self.dome().is_some()
+    }
+
+    /// Returns true if what is below the gloss has normals of its own.
+    pub fn has_relief(&self) -> bool {
+        self.textures.normal.is_some() || self.dome().is_some()
     }
 
     /// Returns true if the surface emits light.

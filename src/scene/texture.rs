@@ -156,9 +156,12 @@ pub struct MaterialTextures {
     pub normal: Option<TextureRef>,
     /// Factor of the normal texture's tilt; 1 is as drawn.
     pub normal_scale: f32,
-    /// The gloss has the normal of the mesh: it lies over the relief, as lacquer over carved wood and the cornea over the
-    /// iris.
+    /// The gloss has the normal of the mesh: it lies over the relief, as lacquer over carved wood.
     pub smooth_gloss: bool,
+    /// Radius of a clear dome over the textures, in half widths of the square from (0, 0) to (1, 1) of their coordinates: the
+    /// surface is a cap of that sphere, and its textures are seen on the flat base, by refraction. Colours of vertices are
+    /// those of the dome without it. 0 for none.
+    pub dome_radius: f32,
     /// How each texture lies on the surface, by slot.
     pub placements: [TexturePlacement; TextureSlot::COUNT],
 }
@@ -172,6 +175,7 @@ impl Default for MaterialTextures {
             normal: None,
             normal_scale: 1.0,
             smooth_gloss: false,
+            dome_radius: 0.0,
             placements: [TexturePlacement::default(); TextureSlot::COUNT],
         }
     }

@@ -197,6 +197,77 @@ fn a_smooth_gloss_lies_over_the_relief_of_its_normal_map() {
     }
 }
 
+/// A cap of a sphere of a radius, in radii of its base, over the inscribed disc of [`square`], with its texture coordinates.
+fn cap(radius: f32) -> Mesh {
+    const RINGS: u32 = 48;
+    const AROUND: u32 = 96;
+    let mut mesh = Mesh::default();
+    for (ring, k) in (0..=RINGS).flat_map(|ring| (0..AROUND).map(move |k| (ring, k))) {
+        let angle = (1.0 / radius).asin() * ring as f32 / RINGS as f32;
+        let (sin, cos) = angle.sin_cos();
+        let around = Vec2::from_angle(std::f32::consts::TAU * k as f32 / AROUND as f32);
+        let normal = (around * sin).extend(cos);
+        mesh.positions.push((normal * radius - Vec3::Z * (radius * radius - 1.0).sqrt()) * 0.7);
+        mesh.normals.push(normal);
+        mesh.uvs.push((normal.truncate() * radius + Vec2::ONE) / 2.0);
+    }
+    let corner = |ring: u32, k: u32| ring * AROUND + k % AROUND;
+    for (ring, k) in (0..RINGS).flat_map(|ring| (0..AROUND).map(move |k| (ring, k))) {
+        let [a, b, c, d] = [(ring, k), (ring + 1, k), (ring + 1, k + 1), (ring, k + 1)].map(|(r, k)| corner(r, k));
+        mesh.triangles.extend([[a, b, c], [a, c, d]]);
+    }
+    mesh
+}
+
+#[test]
+fn a_dome_without_refraction_shows_the_flat_picture_below_it_in_every_renderer() {
+    let Some(mut renderer) = shared_renderer() else { return };
+    // Stripes that fade to black before the edge: beyond its base a dome shows the edge
+    const SIDE: usize = 128;
+    let code = |i: usize| {
+        let place = Vec2::new((i % SIDE) as f32, (i / SIDE) as f32) * (2.0 / SIDE as f32) - Vec2::ONE;
+        let fade = (1.0 - place.length() / 0.9).clamp(0.0, 1.0).sqrt();
+        let stripe = 0.5 + 0.5 * (place.x * 9.0 + place.y * 4.0).sin();
+        [(255.0 * fade * stripe) as u8, (200.0 * fade) as u8, (200.0 * fade * (1.0 - stripe)) as u8]
+    };
+    let mut assets = Assets::default();
+    let picture = Texture::opaque(SIDE as u32, SIDE as u32, (0..SIDE * SIDE).map(code).collect());
+    let (map, tilt) = tilted_map(&mut assets);
+    assets.insert_texture(TextureRef::file("stripes.png"), Arc::new(picture));
+    for (degrees, normal) in [(0.0, Vec3::Z), (45.0, Vec3::Z), (-30.0, tilt)] {
+        let mut textures = MaterialTextures::with_base_color(TextureRef::file("stripes.png"));
+        textures.normal = (normal != Vec3::Z).then(|| map.clone());
+        let turned = |dome_radius, mesh: Mesh, assets: &mut Assets| {
+            let textures = MaterialTextures { dome_radius, ..textures.clone() };
+            let mut scene = scene_of(Material { ior: 1.0, textures, ..Material::default() }, mesh, assets);
+            scene.objects[0].transform.rotation_deg = Vec3::Y * degrees;
+            // Far away, so that the height of the dome is nothing to the light
+            scene.lights.iter_mut().for_each(|light| light.position *= 10.0);
+            scene.lights.iter_mut().for_each(|light| light.power.output = Output::Candela(100_000.0));
+            scene
+        };
+        let shown =
+            |renderer: &mut PreviewRenderer, scene: &Scene, assets: &Assets| pictures(renderer, scene, assets, 64);
+        let scene = turned(1.4, cap(1.4), &mut assets);
+        let ours = shown(&mut renderer, &scene, &assets);
+        let scene = turned(0.0, cap(1.4), &mut assets);
+        let painted = shown(&mut renderer, &scene, &assets);
+        let scene = turned(0.0, square(), &mut assets);
+        let truth = shown(&mut renderer, &scene, &assets);
+        for (((name, ours), (_, painted)), (_, truth)) in ours.iter().zip(&painted).zip(&truth) {
+            let (off, mean) = difference(ours, truth);
+            let (without, _) = difference(painted, truth);
+            println!(
+                "{name} at {degrees}: off by {:.2} %, painted {:.2} % of {mean}",
+                100.0 * off / mean,
+                100.0 * without / mean
+            );
+            assert!(mean > 1e-4 && off < 0.03 * mean, "{name} at {degrees}: off by {off} of {mean}");
+            assert!(degrees == 0.0 || without > 0.2 * mean, "{name} at {degrees}: {without} of {mean}");
+        }
+    }
+}
+
 #[test]
 fn a_map_of_glow_has_its_luminance_in_every_renderer() {
     let Some(mut renderer) = shared_renderer() else { return };

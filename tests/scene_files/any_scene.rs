@@ -57,9 +57,10 @@ fn placement() -> impl Strategy<Value = TexturePlacement> {
 
 fn textures() -> BoxedStrategy<MaterialTextures> {
     let slots = proptest::array::uniform4((proptest::option::of(texture()), proptest::option::of(placement().boxed())));
-    (slots, number(-16.0, 16.0))
-        .prop_map(|(slots, normal_scale)| {
-            let mut textures = MaterialTextures { normal_scale, ..MaterialTextures::default() };
+    let dome_radius = prop_oneof![Just(0.0), number(1.0, 1000.0)];
+    (slots, number(-16.0, 16.0), dome_radius)
+        .prop_map(|(slots, normal_scale, dome_radius)| {
+            let mut textures = MaterialTextures { normal_scale, dome_radius, ..MaterialTextures::default() };
             for (slot, (texture, placement)) in TextureSlot::ALL.into_iter().zip(slots) {
                 *textures.get_mut(slot) = texture;
                 textures.placements[slot as usize] = placement.unwrap_or_default();

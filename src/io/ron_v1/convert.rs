@@ -5,6 +5,7 @@ use super::figure::GazeV1;
 use super::head::{head_from, head_to};
 use super::mannequin;
 use super::names::{LightIds, ObjectIds, UnknownName};
+use super::painted_eyes;
 use super::{
     AimV1, BarnDoorsV1, CameraV1, ColorV1, ConeV1, EmitterV1, FacingV1, FocusV1, GelV1, LightV1, MaterialV1, MeterV1,
     ModifierV1, ObjectV1, OrientationV1, OutputV1, PartMaterialV1, PowerV1, ReceptorV1, RoleV1, RoomV1, SensorV1,
@@ -106,6 +107,7 @@ pub(super) fn object_from(mut file: ObjectV1, index: u32, lights: &LightIds) -> 
     if let (Shape::Figure(figure), Some(gaze)) = (&mut object.shape, gaze) {
         figure.gaze = gaze;
     }
+    painted_eyes::put_under_cornea(&mut object);
     if is_mannequin {
         mannequin::complete_parts(&mut object);
     }

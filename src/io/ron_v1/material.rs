@@ -36,6 +36,8 @@ pub(super) enum MaterialV1 {
         #[serde(default, skip_serializing_if = "is_default")]
         smooth_gloss: bool,
         #[serde(default, skip_serializing_if = "is_default")]
+        dome_radius: f32,
+        #[serde(default, skip_serializing_if = "is_default")]
         metallic: f32,
         #[serde(default = "default_roughness")]
         roughness: f32,
@@ -160,6 +162,7 @@ impl From<MaterialV1> for Material {
                 normal_placement,
                 normal_scale,
                 smooth_gloss,
+                dome_radius,
                 metallic,
                 roughness,
                 ior,
@@ -184,6 +187,7 @@ impl From<MaterialV1> for Material {
                     normal: normal_texture.as_deref().map(TextureRef::parse),
                     normal_scale,
                     smooth_gloss,
+                    dome_radius,
                     placements: TextureSlot::ALL.map(|slot| {
                         let placement = match slot {
                             TextureSlot::BaseColor => base_color_placement,
@@ -253,6 +257,7 @@ impl From<&Material> for MaterialV1 {
             normal_placement: placement(TextureSlot::Normal),
             normal_scale: textures.normal_scale,
             smooth_gloss: textures.smooth_gloss,
+            dome_radius: textures.dome_radius,
             metallic,
             roughness,
             ior,

@@ -19,6 +19,7 @@ mod material;
 mod material_layers;
 mod material_preset;
 mod names;
+mod painted_eyes;
 mod prop;
 mod scene;
 mod shape;

@@ -19,6 +19,8 @@ pub(crate) struct DrawItem {
     pub textures: TextureKeys,
     /// The surface is not all there.
     pub has_holes: bool,
+    /// A dome lies over its textures.
+    pub has_dome: bool,
     pub pass: DrawPass,
     pub shadow: ShadowCasting,
     /// Sides of glass in drawing order: the far side of a solid first.

@@ -223,10 +223,10 @@ impl DrawList {
         let glow = emission(material, scene);
         let glows = glow.is_finite() && glow.max_element() > 0.0;
         let PlainBase { base_color, roughness } = material.plain_base();
-        let relief = match &material.textures.normal {
-            Some(_) if material.textures.smooth_gloss => FLAG_RELIEF | FLAG_SMOOTH_GLOSS,
-            Some(_) => FLAG_RELIEF,
-            None => 0,
+        let relief = match (material.has_relief(), material.has_smooth_gloss()) {
+            (true, true) => FLAG_RELIEF | FLAG_SMOOTH_GLOSS,
+            (true, false) => FLAG_RELIEF,
+            (false, _) => 0,
         };
         let surface = GpuSurface {
             base_color: base_color.map(|c| c.clamp(0.0, 1.0)),
@@ -257,6 +257,7 @@ impl DrawList {
             indices: part.triangles.start * 3..part.triangles.end * 3,
             surface,
             textures,
+            has_dome: material.dome().is_some(),
             has_holes: material.alpha != Alpha::Opaque && !glass,
             pass: if glass { DrawPass::Glass } else { DrawPass::Opaque },
             shadow: ShadowCasting::None,

@@ -1,5 +1,6 @@
 //! How the textures of a surface lie on it, as the shaders read it.
 
+use crate::math::Dome;
 use crate::scene::{Alpha, Material, TextureSlot};
 use bytemuck::{Pod, Zeroable};
 
@@ -18,9 +19,12 @@ pub(crate) struct GpuMaps {
     opacity: f32,
     /// Bits of the slots that lie by the second set of texture coordinates, and of a smooth gloss.
     bits: u32,
+    /// Radius and index of refraction of the dome over the textures; 0 for none.
+    dome: [f32; 2],
+    unused: [f32; 2],
 }
 
-/// Bit of a surface whose normal map is below the gloss; twin of `SMOOTH_GLOSS_BIT` in `draw.wgsl`.
+/// Bit of a surface whose relief is below the gloss; twin of `SMOOTH_GLOSS_BIT` in `draw.wgsl`.
 const SMOOTH_GLOSS_BIT: u32 = 256;
 
 impl GpuMaps {
@@ -35,7 +39,7 @@ impl GpuMaps {
             Alpha::Blend { opacity } => (-1.0, opacity),
         };
         let bit = |slot: &TextureSlot| u32::from(textures.placement(*slot).second_uvs) << (*slot as u32);
-        let smooth_gloss = if textures.normal.is_some() && textures.smooth_gloss { SMOOTH_GLOSS_BIT } else { 0 };
+        let smooth_gloss = if material.has_relief() && material.has_smooth_gloss() { SMOOTH_GLOSS_BIT } else { 0 };
         GpuMaps {
             matrices: transforms.map(|transform| transform.matrix2.to_cols_array()),
             offsets: [[a.x, a.y, b.x, b.y], [c.x, c.y, d.x, d.y]],
@@ -44,6 +48,8 @@ impl GpuMaps {
             cutoff,
             opacity,
             bits: TextureSlot::ALL.iter().map(bit).sum::<u32>() | smooth_gloss,
+            dome: material.dome().map_or([0.0; 2], |Dome { radius, ior }| [radius, ior]),
+            unused: [0.0; 2],
         }
     }
 }

@@ -33,7 +33,7 @@ impl Sampled {
     /// Returns what is sampled for an item.
     pub fn of(item: &DrawItem) -> Self {
         let [base_color, others @ ..] = &item.textures;
-        match (item.has_holes, others.iter().any(TextureKey::is_texture)) {
+        match (item.has_holes, item.has_dome || others.iter().any(TextureKey::is_texture)) {
             (true, _) => Sampled::Holes,
             (false, true) => Sampled::Everything,
             (false, false) if base_color.is_texture() => Sampled::BaseColor,

@@ -15,9 +15,11 @@ struct Draw {
     // Scale of the normal map; least alpha that is there, negative for blended surfaces; factor of the alpha of those; bits
     // of the slots that lie by the second set of texture coordinates, and of a smooth gloss.
     maps: vec4f,
+    // Radius of the dome over the textures, 0 for none; its index of refraction; two unused.
+    dome: vec4f,
 }
 
-// Bit of a surface whose normal map is below the gloss; twin of `gpu_maps.rs`.
+// Bit of a surface whose relief is below the gloss; twin of `gpu_maps.rs`.
 const SMOOTH_GLOSS_BIT: u32 = 256u;
 
 @group(1) @binding(0) var<uniform> draw: Draw;

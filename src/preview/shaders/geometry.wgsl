@@ -40,21 +40,27 @@ struct FragmentOutput {
     @location(1) id: vec2u,
 }
 
-// Returns the normal tilted by a pixel of a normal map; twin of `math::tilted_normal`. `d1` and `d2` are differences of the
-// position, `duv1` and `duv2` those of the picture's coordinates.
-fn tilted_normal(normal: vec3f, d1: vec3f, d2: vec3f, duv1: vec2f, duv2: vec2f, direction: vec3f) -> vec3f {
+// Returns the tangent frame of a normal; twin of `math::tangent_frame`. `d1` and `d2` are differences of the position,
+// `duv1` and `duv2` those of the picture's coordinates. Its tangents are zero where it is degenerate.
+fn tangent_frame(normal: vec3f, d1: vec3f, d2: vec3f, duv1: vec2f, duv2: vec2f) -> mat3x3f {
     let determinant = duv1.x * duv2.y - duv1.y * duv2.x;
     let side = select(-1.0, 1.0, determinant >= 0.0);
     let du = (d1 * duv2.y - d2 * duv1.y) * side;
     let dv = (d2 * duv1.x - d1 * duv2.x) * side;
     let along = du - normal * dot(normal, du);
     let squared = dot(along, along);
-    let tangent = along * inverseSqrt(max(squared, 1e-37));
+    let usable = abs(determinant) > 1e-30 && squared > 1e-37;
+    let tangent = along * select(0.0, inverseSqrt(max(squared, 1e-37)), usable);
     var bitangent = cross(normal, tangent);
     bitangent *= select(-1.0, 1.0, dot(bitangent, dv) >= 0.0);
-    let tilted = tangent * direction.x + bitangent * direction.y + normal * direction.z;
-    let usable = abs(determinant) > 1e-30 && squared > 1e-37 && dot(tilted, tilted) > 1e-12;
-    return select(normal, tilted * inverseSqrt(max(dot(tilted, tilted), 1e-12)), usable);
+    return mat3x3f(tangent, bitangent, normal);
+}
+
+// Returns a direction of tangent space as a normal; twin of `math::tilted_normal`.
+fn tilted_normal(frame: mat3x3f, direction: vec3f) -> vec3f {
+    let tilted = frame * direction;
+    let squared = dot(tilted, tilted);
+    return select(frame[2], tilted * inverseSqrt(max(squared, 1e-12)), squared > 1e-12);
 }
 
 @fragment
@@ -70,8 +76,21 @@ fn fragment(in: VertexOutput, @builtin(front_facing) front: bool) -> FragmentOut
     // Surface kind in the two upper bits: 0 lit, 1 lit and emissive, 2 the front of an emitter
     var color = draw.surface.x;
     var gloss = draw.surface.y;
+    var uvs = in.uvs;
+    let d1 = dpdx(in.world);
+    let d2 = dpdy(in.world);
+    let has_dome = TEXTURES > 1u && draw.dome.x > 0.0;
+    var world_from_base = mat3x3f();
+    if TEXTURES > 1u {
+        // Under a dome the textures are seen by refraction
+        let frame = tangent_frame(normalize(normal), d1, d2, dpdx(in.uvs.xy), dpdy(in.uvs.xy));
+        let place = dome_place(in.uvs.xy);
+        world_from_base = frame * transpose(dome_tangents(place));
+        let seen = vec4f(seen_through_dome(place, normalize(to_eye) * frame), in.uvs.zw);
+        uvs = select(in.uvs, seen, has_dome);
+    }
     if TEXTURES > 0u {
-        let texel = textureSample(base_color_texture, base_color_sampler, from_top(slot_uv(SLOT_BASE_COLOR, in.uvs)));
+        let texel = textureSample(base_color_texture, base_color_sampler, from_top(slot_uv(SLOT_BASE_COLOR, uvs)));
         color = pack_color(unpack_color(color) * texel.rgb, color >> 30u);
         if HOLES {
             if coverage(texel.a) <= screen_threshold(vec2u(in.clip.xy)) {
@@ -81,24 +100,23 @@ fn fragment(in: VertexOutput, @builtin(front_facing) front: bool) -> FragmentOut
     }
     if TEXTURES > 1u {
         // Roughness and metal, and what glows of a surface
-        let factors = textureSample(gloss_texture, gloss_sampler, from_top(slot_uv(SLOT_GLOSS, in.uvs))).rgb;
-        let glow = textureSample(emission_texture, emission_sampler, from_top(slot_uv(SLOT_EMISSION, in.uvs))).rgb;
+        let factors = textureSample(gloss_texture, gloss_sampler, from_top(slot_uv(SLOT_GLOSS, uvs))).rgb;
+        let glow = textureSample(emission_texture, emission_sampler, from_top(slot_uv(SLOT_EMISSION, uvs))).rgb;
         let glows = color >> 30u == 1u;
         let values = select(unpack_gloss(gloss), unpack_glowing_gloss(gloss, 0.0), glows) * vec3f(factors.g, 1.0, factors.b);
         gloss = select(pack_gloss(values), pack_glowing_gloss(values, glow), glows);
         // The normal map
-        let normal_uv = slot_uv(SLOT_NORMAL, in.uvs);
-        let texel = textureSample(normal_texture, normal_sampler, from_top(normal_uv)).rgb * 2.0 - 1.0;
+        let texel = textureSample(normal_texture, normal_sampler, from_top(slot_uv(SLOT_NORMAL, uvs))).rgb * 2.0 - 1.0;
         let direction = vec3f(texel.xy * draw.maps.x, texel.z);
-        let d1 = dpdx(in.world);
-        let d2 = dpdy(in.world);
-        let tilted = tilted_normal(normalize(normal), d1, d2, dpdx(normal_uv), dpdy(normal_uv), direction);
+        let normal_uv = slot_uv(SLOT_NORMAL, in.uvs);
+        let frame = tangent_frame(normalize(normal), d1, d2, dpdx(normal_uv), dpdy(normal_uv));
+        let tilted = select(tilted_normal(frame, direction), tilted_normal(world_from_base, direction), has_dome);
         // It is bent towards the viewer where the lighting pass needs that
         // A smooth gloss keeps the normal that it has, in the place of the geometric one
         geometric_normal = select(geometric_normal, normal, (bitcast<u32>(draw.maps.w) & SMOOTH_GLOSS_BIT) != 0u);
-        normal = select(normal, tilted, draw.maps.x != 0.0);
+        normal = select(normal, tilted, draw.maps.x != 0.0 || has_dome);
     }
-    if any(in.color < vec3f(0.999)) {
+    if any(in.color < vec3f(0.999)) && !has_dome {
         color = pack_color(unpack_color(color) * in.color, color >> 30u);
     }
     color = select(color, 2u << 30u, draw.surface.w != 0u && front);

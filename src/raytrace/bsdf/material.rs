@@ -6,6 +6,7 @@ use super::fibre::TracedFibre;
 use super::ggx;
 use super::layers::SurfaceLayers;
 use super::roughness_tables::RoughnessTables;
+use crate::math::Dome;
 use crate::scene::{Alpha, Material, TextureSlot};
 use glam::Vec3;
 use std::sync::Arc;
@@ -45,6 +46,8 @@ pub struct TracedMaterial {
     pub normal_scale: f32,
     /// The normal texture is below the gloss, which has the normal of the mesh.
     pub smooth_gloss: bool,
+    /// The clear dome over the textures.
+    pub dome: Option<Dome>,
     /// Parts of the surface that are not there. Glass is all there.
     pub coverage: Alpha,
     /// The fibre that strands of the material are.
@@ -92,7 +95,8 @@ impl TracedMaterial {
             tables,
             mapped_gloss: None,
             normal_scale: material.textures.normal_scale,
-            smooth_gloss: material.textures.smooth_gloss,
+            smooth_gloss: material.has_smooth_gloss(),
+            dome: material.dome(),
             coverage: if clear > 0.0 { Alpha::Opaque } else { material.alpha },
             fibre: material.fibre.as_ref().map(TracedFibre::new),
             layers,

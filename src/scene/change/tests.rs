@@ -203,6 +203,7 @@ fn shapes_and_surfaces_need_preparation() {
             ("base_color_texture", |s| s.objects[0].material.textures.base_color = Some(TextureRef::file("a.png"))),
             ("normal_texture", |s| s.objects[0].material.textures.normal = Some(TextureRef::file("a.png"))),
             ("normal_scale", |s| s.objects[0].material.textures.normal_scale = 2.0),
+            ("dome_radius", |s| s.objects[0].material.textures.dome_radius = 1.5),
             ("emission_placement", |s| s.objects[0].material.textures.placements[2].nearest = true),
             ("alpha", |s| s.objects[0].material.alpha = Alpha::Mask { cutoff: 0.5 }),
             ("metallic", |s| s.objects[0].material.metallic = 1.0),

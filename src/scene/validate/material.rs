@@ -85,6 +85,10 @@ fn check_textures(field: &str, material: &Material, check: &mut Check) {
         }
     }
     check.number(&name("normal_scale"), material.textures.normal_scale, Allowed::between(-16.0, 16.0, ""));
+    if material.textures.dome_radius != 0.0 {
+        let radii = Allowed::between(1.0, 1000.0, "half widths of the picture, or 0 for none");
+        check.number(&name("dome_radius"), material.textures.dome_radius, radii);
+    }
     for slot in TextureSlot::ALL {
         let TexturePlacement { offset, rotation_deg, scale, wrap: _, nearest: _, second_uvs: _ } =
             *material.textures.placement(slot);
