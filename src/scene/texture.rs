@@ -158,9 +158,9 @@ pub struct MaterialTextures {
     pub normal_scale: f32,
     /// The gloss has the normal of the mesh: it lies over the relief, as lacquer over carved wood.
     pub smooth_gloss: bool,
-    /// Radius of a clear dome over the textures, in half widths of the square from (0, 0) to (1, 1) of their coordinates: the
-    /// surface is a cap of that sphere, and its textures are seen on the flat base, by refraction. Colours of vertices are
-    /// those of the dome without it. 0 for none.
+    /// Radius of a clear dome over the textures, in half widths of the square from (0, 0) to (1, 1) of their coordinates; 0
+    /// for none. The surface is a cap of that sphere, and its textures are seen on the flat base, by refraction. Colours of
+    /// vertices, which lie on the surface, are not shown below it.
     pub dome_radius: f32,
     /// How each texture lies on the surface, by slot.
     pub placements: [TexturePlacement; TextureSlot::COUNT],
