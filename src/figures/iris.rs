@@ -13,8 +13,8 @@ use std::f32::consts::TAU;
 pub const IRIS_M: f32 = 0.0059;
 /// Radius of the pupil in studio light as it is seen from the front, in radii of the iris.
 pub const PUPIL: f32 = 0.0018 / IRIS_M;
-/// The cornea, in radii of the iris.
-pub const CORNEA: Dome = Dome { radius: 0.0078 / IRIS_M, ior: 1.38 };
+/// The cornea, in radii of the iris: 7.8 mm.
+pub const CORNEA: Dome = Dome { radius: 1.322, ior: 1.38 };
 
 /// Side of the pictures, pixels.
 const SIZE: usize = 256;

@@ -124,6 +124,26 @@ fn eyes_and_hair_of_a_figure_take_the_colour_of_a_square_at_a_click() {
 }
 
 #[test]
+fn the_dome_over_an_iris_is_taken_off_in_the_surface_of_the_iris() {
+    let Some(mut window) = preset_window() else { return };
+    click(&mut window, "Figures");
+    click(&mut window, "Add Woman, 34, long hair");
+    let radius = |window: &Window| scene(window).objects.last().unwrap().material_of("iris").textures.dome_radius;
+    let before = radius(&window);
+    assert!(before > 1.0, "{before}");
+    for label in ["Surface of iris", "Over the textures"] {
+        // That of the iris is below that of the skin
+        window.get_all_by_label(label).last().unwrap().scroll_to_me();
+        settle(&mut window);
+        window.get_all_by_label(label).last().unwrap().click();
+        settle(&mut window);
+    }
+    assert_eq!(radius(&window), 0.0);
+    press(&mut window, Modifiers::COMMAND, Key::Z);
+    assert_eq!(radius(&window), before, "one step of undo");
+}
+
+#[test]
 fn shelves_and_the_list_of_studios_fill_with_pictures() {
     let Some(mut window) = preset_window() else { return };
     let wait_for = |window: &mut Window, count: usize| {

@@ -26,7 +26,20 @@ pub(super) fn put_under_cornea(object: &mut Object) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::figures::EYE_COLORS;
+    use crate::io::presets;
     use crate::scene::Material;
+
+    #[test]
+    fn the_eyes_of_the_shipped_people_have_colors_to_choose_from() {
+        let scenes: Vec<_> = presets().iter().map(|preset| preset.scene().unwrap()).collect();
+        let people = scenes.iter().flat_map(|scene| &scene.objects).filter(|o| matches!(o.shape, Shape::Figure(_)));
+        let irises: Vec<_> = people.map(|person| (&person.name, person.material_of("iris"))).collect();
+        assert!(irises.len() >= 12, "{}", irises.len());
+        for (name, iris) in irises {
+            assert!(EYE_COLORS.iter().any(|color| color.material() == *iris), "{name}: {iris:?}");
+        }
+    }
 
     #[test]
     fn a_painted_iris_goes_under_the_cornea_and_keeps_its_color() {

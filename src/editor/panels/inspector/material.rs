@@ -100,8 +100,12 @@ fn texture_rows(ui: &mut Ui, material: &mut Material) -> Option<TextureSlot> {
             "How strong the relief of the normal map is; 1 is as drawn, less than 0 turns it inside out",
             |ui| NumberField::new(0.02, -4.0, 4.0, 2, "").ui(ui, &mut material.textures.normal_scale),
         );
-        ui.checkbox(&mut material.textures.smooth_gloss, "Smooth gloss")
-            .on_hover_text("The gloss lies over the relief and does not follow it, as lacquer does");
+        // Under a dome it is smooth
+        if material.textures.dome_radius == 0.0 {
+            row(ui, "Gloss", "It lies over the relief and does not follow it, as lacquer does", |ui| {
+                ui.checkbox(&mut material.textures.smooth_gloss, "Smooth over the relief")
+            });
+        }
     }
     if material.textures.iter().next().is_some() {
         dome_rows(ui, &mut material.textures.dome_radius);
@@ -117,9 +121,11 @@ fn dome_rows(ui: &mut Ui, radius: &mut f32) {
     let mut has_dome = *radius > 0.0;
     let tip = "The surface is a clear cap of a sphere, and its textures are seen on the flat base of it, by refraction, as \
                the iris below the cornea";
-    if ui.checkbox(&mut has_dome, "Under a dome").on_hover_text(tip).changed() {
-        *radius = if has_dome { 1.5 } else { 0.0 };
-    }
+    row(ui, "Dome", tip, |ui| {
+        if ui.checkbox(&mut has_dome, "Over the textures").changed() {
+            *radius = if has_dome { 1.5 } else { 0.0 };
+        }
+    });
     if has_dome {
         row(ui, "Radius", "That of the sphere, in half widths of the picture: 1 is half a ball", |ui| {
             NumberField::new(0.01, 1.0, 1000.0, 2, "").ui(ui, radius)
