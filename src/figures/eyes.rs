@@ -73,15 +73,15 @@ pub fn add_eye(mesh: &mut QuadMesh, world_from_eye: Affine3A, part: impl Fn(EyeP
     let limit = iris_radius.asin();
     let white = (0..=20).map(|i| {
         let angle = std::f32::consts::PI + (limit - std::f32::consts::PI) * i as f32 / 20.0;
-        Ring { place: 2.0 - i as f32 / 20.0, point: Vec2::new(angle.sin(), angle.cos()) }
+        Ring { uv_radius: 2.0 - i as f32 / 20.0, point: Vec2::new(angle.sin(), angle.cos()) }
     });
     add_rings(mesh, world_from_eye, part(EyePart::White), white);
     // The cornea: a steeper sphere through the edge of the iris
     let centre = cornea_centre(iris_radius);
-    let cap = |place: f32| {
-        let angle = (place / CORNEA.radius).asin();
+    let cap = |uv_radius: f32| {
+        let angle = (uv_radius / CORNEA.radius).asin();
         let point = Vec2::new(0.0, centre) + iris_radius * CORNEA.radius * Vec2::new(angle.sin(), angle.cos());
-        Ring { place, point }
+        Ring { uv_radius, point }
     };
     let cornea = mesh.positions.len();
     let over_iris = (0..=12).map(|i| 1.0 + (PUPIL - 1.0) * i as f32 / 12.0);
@@ -109,29 +109,29 @@ fn white_color(point: Vec3, iris_radius: f32) -> Vec3 {
 #[derive(Clone, Copy, Debug)]
 struct Ring {
     /// Radius in the texture coordinates, in half widths of the picture of the iris.
-    place: f32,
-    /// Radius and place along the axis, in radii of the ball.
+    uv_radius: f32,
+    /// Radius and position along the axis, in radii of the ball.
     point: Vec2,
 }
 
 /// Appends a surface of revolution about Z from rings, outside to the front.
 fn add_rings(mesh: &mut QuadMesh, world: Affine3A, part: u8, rings: impl Iterator<Item = Ring>) {
     let first = mesh.positions.len() as u32;
-    let mut places = Vec::new();
+    let mut uv_radii = Vec::new();
     let direction = |k: usize| Vec2::from_angle(TAU * k as f32 / AROUND as f32);
-    for Ring { place, point } in rings {
+    for Ring { uv_radius, point } in rings {
         let positions = (0..AROUND).map(|k| (direction(k) * point.x).extend(point.y));
         mesh.positions.extend(positions.map(|position| world.transform_point3(position)));
-        places.push(place);
+        uv_radii.push(uv_radius);
     }
     let around = AROUND as u32;
-    for (ring, places) in places.windows(2).enumerate() {
+    for (ring, radii) in uv_radii.windows(2).enumerate() {
         for k in 0..AROUND {
             let next = (k + 1) % AROUND;
             let [a, b] = [k, next].map(|k| first + ring as u32 * around + k as u32);
             mesh.quads.push([a, b, b + around, a + around]);
-            let uv = |k: usize, place: f32| direction(k) * (0.5 * place) + Vec2::splat(0.5);
-            mesh.uvs.push([uv(k, places[0]), uv(next, places[0]), uv(next, places[1]), uv(k, places[1])]);
+            let uv = |k: usize, radius: f32| direction(k) * (0.5 * radius) + Vec2::splat(0.5);
+            mesh.uvs.push([uv(k, radii[0]), uv(next, radii[0]), uv(next, radii[1]), uv(k, radii[1])]);
             mesh.parts.push(part);
         }
     }
@@ -160,12 +160,12 @@ mod tests {
         let normals = mesh.normals();
         for (index, quad) in mesh.quads.iter().enumerate().filter(|(i, _)| mesh.parts[*i] == EyePart::Iris as u8) {
             for (vertex, uv) in quad.iter().zip(mesh.uvs[index]) {
-                let place = uv * 2.0 - Vec2::ONE;
-                assert!(place.length() < 1.0001, "{place}");
+                let point = uv * 2.0 - Vec2::ONE;
+                assert!(point.length() < 1.0001, "{point}");
                 // The mesh has the normals of the dome but at its edge, where the mesh ends
-                let expected = CORNEA.frame(place).z_axis;
+                let expected = CORNEA.frame(point).z_axis;
                 let off = normals[*vertex as usize].angle_between(expected).to_degrees();
-                assert!(place.length() > 0.99 || off < 2.0, "{off} degrees at {place}");
+                assert!(point.length() > 0.99 || off < 2.0, "{off} degrees at {point}");
             }
         }
     }

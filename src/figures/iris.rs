@@ -43,24 +43,24 @@ impl IrisFibres {
         IrisFibres { pupil, fibres }
     }
 
-    /// Returns the numbers of the fibres at a place, smooth around the iris, and their derivatives by the fibre's index.
-    fn at(&self, place: Vec2) -> (Vec3, Vec3) {
-        let around = (place.to_angle() / TAU).rem_euclid(1.0) * FIBRES as f32;
+    /// Returns the numbers of the fibres at a point, smooth around the iris, and their derivatives by the fibre's index.
+    fn at(&self, point: Vec2) -> (Vec3, Vec3) {
+        let around = (point.to_angle() / TAU).rem_euclid(1.0) * FIBRES as f32;
         let [a, b] = [0, 1].map(|k| Vec3::from(self.fibres[(around as usize + k) % FIBRES]));
         let t = around.fract();
         (a.lerp(b, t * t * (3.0 - 2.0 * t)), (b - a) * (6.0 * t * (1.0 - t)))
     }
 
-    /// Returns how far a place is from the pupil, 0, to the edge, 1.
-    fn outwards(&self, place: Vec2) -> f32 {
-        ((place.length() - self.pupil) / (1.0 - self.pupil)).clamp(0.0, 1.0)
+    /// Returns how far a point is from the pupil, 0, to the edge, 1.
+    fn outwards(&self, point: Vec2) -> f32 {
+        ((point.length() - self.pupil) / (1.0 - self.pupil)).clamp(0.0, 1.0)
     }
 
-    /// Returns the colour at a place in radii of the iris, a factor of the base colour: dark at the edge (the limbal ring),
+    /// Returns the colour at a point in radii of the iris, a factor of the base colour: dark at the edge (the limbal ring),
     /// with fibres from there to the pupil, which are lighter near it, and black in the pupil.
-    pub fn color(&self, place: Vec2) -> Vec3 {
-        let outwards = self.outwards(place);
-        let [at_edge, at_pupil, zone] = self.at(place).0.to_array();
+    pub fn color(&self, point: Vec2) -> Vec3 {
+        let outwards = self.outwards(point);
+        let [at_edge, at_pupil, zone] = self.at(point).0.to_array();
         let limbus = ((outwards - 0.78) / 0.22).clamp(0.0, 1.0);
         let inner = 1.0 - ((outwards - 0.1) / (0.2 + 0.15 * zone)).clamp(0.0, 1.0);
         let streak = 0.4 + 0.45 * (at_pupil + (at_edge - at_pupil) * outwards);
@@ -68,17 +68,17 @@ impl IrisFibres {
         let tint = Vec3::ONE.lerp(Vec3::new(1.0, 0.8, 0.45), inner) * (streak + 0.25 * inner);
         // The pupil's edge is a thin dark line
         let rim = 0.4 + 0.6 * (outwards / 0.06).min(1.0);
-        let in_pupil = ((self.pupil - place.length()) / (0.03 * self.pupil)).clamp(0.0, 1.0);
+        let in_pupil = ((self.pupil - point.length()) / (0.03 * self.pupil)).clamp(0.0, 1.0);
         tint * (rim * (1.0 - 0.8 * limbus) * (1.0 - in_pupil))
     }
 
-    /// Returns the normal at a place in radii of the iris: X and Y along the place's, Z out of the eye.
-    fn normal(&self, place: Vec2) -> Vec3 {
-        let outwards = self.outwards(place);
-        let (_, slopes) = self.at(place);
+    /// Returns the normal at a point in radii of the iris: X and Y as those of the point, Z out of the eye.
+    fn normal(&self, point: Vec2) -> Vec3 {
+        let outwards = self.outwards(point);
+        let (_, slopes) = self.at(point);
         // Fibres end before the edge
         let across = FIBRE_SLOPE * slopes.x / 1.5 * 4.0 * outwards * (1.0 - outwards);
-        let radial = place.normalize_or_zero();
+        let radial = point.normalize_or_zero();
         let tilt = radial.perp() * -across - radial * (HOLLOW_RAD * outwards).tan();
         tilt.extend(1.0).normalize()
     }
@@ -86,31 +86,31 @@ impl IrisFibres {
 
 /// Returns the radius of the pupil on the base: the cornea magnifies it.
 fn pupil_on_base() -> f32 {
-    let place = Vec2::X * PUPIL;
-    let view_dir = CORNEA.frame(place).transpose() * Vec3::Z;
-    CORNEA.seen_uv(place, view_dir).x * 2.0 - 1.0
+    let point = Vec2::X * PUPIL;
+    let view_dir = CORNEA.frame(point).transpose() * Vec3::Z;
+    CORNEA.seen_uv(point, view_dir).x * 2.0 - 1.0
 }
 
-/// Draws a picture of the base: pixels for places in radii of the iris.
+/// Draws a picture of the base: pixels for points in radii of the iris.
 fn picture(pixel: impl Fn(Vec2) -> [u8; 3]) -> Texture {
-    let place = |index: usize| {
+    let point = |index: usize| {
         let (x, y) = ((index % SIZE) as f32 + 0.5, (index / SIZE) as f32 + 0.5);
         // Rows run down, V runs up
         Vec2::new(x, SIZE as f32 - y) * (2.0 / SIZE as f32) - Vec2::ONE
     };
-    Texture::opaque(SIZE as u32, SIZE as u32, (0..SIZE * SIZE).map(|index| pixel(place(index))).collect())
+    Texture::opaque(SIZE as u32, SIZE as u32, (0..SIZE * SIZE).map(|index| pixel(point(index))).collect())
 }
 
 /// Draws the colours of iris and pupil.
 pub fn iris_picture() -> Texture {
     let fibres = IrisFibres::new(pupil_on_base());
-    picture(|place| fibres.color(place).to_array().map(|c| (srgb_encode(c.min(1.0)) * 255.0).round() as u8))
+    picture(|point| fibres.color(point).to_array().map(|c| (srgb_encode(c.min(1.0)) * 255.0).round() as u8))
 }
 
 /// Draws the normals of the iris.
 pub fn iris_relief() -> Texture {
     let fibres = IrisFibres::new(pupil_on_base());
-    picture(|place| fibres.normal(place).to_array().map(|c| ((c + 1.0) * 127.5).round() as u8))
+    picture(|point| fibres.normal(point).to_array().map(|c| ((c + 1.0) * 127.5).round() as u8))
 }
 
 #[cfg(test)]

@@ -7,7 +7,7 @@ use glam::{Mat3, Vec2, Vec3};
 const LEAST_DESCENT: f32 = 0.05;
 
 /// A cap of a clear sphere whose flat base shows a picture. Lengths are in radii of the base; the picture is the square
-/// around the base. Places on the dome and on the base are projected along its axis: (0, 0) is the middle, (1, 0) the end
+/// around the base. Points on the dome and on the base are projected along its axis: (0, 0) is the middle, (1, 0) the end
 /// of U, (0, 1) that of V.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Dome {
@@ -21,36 +21,36 @@ impl Dome {
     /// Returns the texture coordinates that are seen at those of the dome, and world from base, whose axes are U, V and out
     /// of the picture. `frame` is the tangent frame of the surface in the world, `view_dir` the unit direction to the viewer.
     pub fn seen(&self, uv: Vec2, frame: Mat3, view_dir: Vec3) -> (Vec2, Mat3) {
-        let place = Dome::place_at(uv);
-        (self.seen_uv(place, frame.transpose() * view_dir), frame * self.frame(place).transpose())
+        let point = Dome::point_at(uv);
+        (self.seen_uv(point, frame.transpose() * view_dir), frame * self.frame(point).transpose())
     }
 
-    /// Returns the place for texture coordinates, inside of the dome's edge.
-    fn place_at(uv: Vec2) -> Vec2 {
+    /// Returns the point on the dome at texture coordinates, inside of its edge.
+    fn point_at(uv: Vec2) -> Vec2 {
         (uv * 2.0 - Vec2::ONE).clamp_length_max(0.999)
     }
 
-    /// Returns the distance of a place on the dome from the plane through the sphere's centre.
-    fn above_centre(&self, place: Vec2) -> f32 {
-        safe_sqrt(self.radius * self.radius - place.length_squared())
+    /// Returns the distance of a point on the dome from the plane through the sphere's centre.
+    fn above_centre(&self, point: Vec2) -> f32 {
+        safe_sqrt(self.radius * self.radius - point.length_squared())
     }
 
-    /// Returns the tangent frame of the dome at a place: a tangent along U, one across it along V, and the normal, in the
+    /// Returns the tangent frame of the dome at a point: a tangent along U, one across it along V, and the normal, in the
     /// axes U, V and out of the picture.
-    pub fn frame(&self, place: Vec2) -> Mat3 {
-        let above = self.above_centre(place);
-        let normal = place.extend(above) / self.radius;
-        let along_u = Vec3::new(above, 0.0, -place.x).normalize_or(Vec3::X);
+    pub fn frame(&self, point: Vec2) -> Mat3 {
+        let above = self.above_centre(point);
+        let normal = point.extend(above) / self.radius;
+        let along_u = Vec3::new(above, 0.0, -point.x).normalize_or(Vec3::X);
         Mat3::from_cols(along_u, normal.cross(along_u), normal)
     }
 
-    /// Returns the texture coordinates that are seen at a place on the dome; beyond the base those of its edge. `view_dir` is
-    /// the unit direction to the viewer in the tangent frame of that place.
-    pub fn seen_uv(&self, place: Vec2, view_dir: Vec3) -> Vec2 {
+    /// Returns the texture coordinates that are seen at a point on the dome; beyond the base those of its edge. `view_dir` is
+    /// the unit direction to the viewer in the tangent frame of that point.
+    pub fn seen_uv(&self, point: Vec2, view_dir: Vec3) -> Vec2 {
         let aside = view_dir.truncate() / self.ior;
-        let refracted = self.frame(place) * (-aside).extend(-safe_sqrt(1.0 - aside.length_squared()));
-        let height = self.above_centre(place) - safe_sqrt(self.radius * self.radius - 1.0);
-        let seen = place + refracted.truncate() * (height.max(0.0) / (-refracted.z).max(LEAST_DESCENT));
+        let refracted = self.frame(point) * (-aside).extend(-safe_sqrt(1.0 - aside.length_squared()));
+        let height = self.above_centre(point) - safe_sqrt(self.radius * self.radius - 1.0);
+        let seen = point + refracted.truncate() * (height.max(0.0) / (-refracted.z).max(LEAST_DESCENT));
         seen.clamp_length_max(1.0) * 0.5 + Vec2::splat(0.5)
     }
 }
@@ -81,10 +81,10 @@ mod tests {
         // Paraxial: a ray at height y is refracted by y / R (1 - 1 / n), and meets the base below it by `height`
         let expected = 1.0 - height() * (DOME.ior - 1.0) / (DOME.ior * DOME.radius);
         for direction in [Vec2::X, Vec2::Y, Vec2::new(-0.6, 0.8)] {
-            let place = direction * 0.02;
-            let view_dir = DOME.frame(place).transpose() * Vec3::Z;
-            let seen = DOME.seen_uv(place, view_dir) * 2.0 - Vec2::ONE;
-            assert!((seen / 0.02).distance(direction * expected) < 1e-3, "{seen} instead of {}", place * expected);
+            let point = direction * 0.02;
+            let view_dir = DOME.frame(point).transpose() * Vec3::Z;
+            let seen = DOME.seen_uv(point, view_dir) * 2.0 - Vec2::ONE;
+            assert!((seen / 0.02).distance(direction * expected) < 1e-3, "{seen} instead of {}", point * expected);
         }
     }
 
@@ -92,15 +92,15 @@ mod tests {
     fn a_dome_without_refraction_shows_what_lies_behind_in_a_straight_line_and_no_more_than_its_base() {
         let dome = Dome { ior: 1.0, ..DOME };
         let view = Vec3::new(0.3, -0.2, 1.0).normalize();
-        for place in [Vec2::new(0.3, 0.1), Vec2::new(-0.5, 0.2), Vec2::new(0.0, -0.6)] {
-            let frame = dome.frame(place);
+        for point in [Vec2::new(0.3, 0.1), Vec2::new(-0.5, 0.2), Vec2::new(0.0, -0.6)] {
+            let frame = dome.frame(point);
             assert!((frame.transpose() * frame).abs_diff_eq(Mat3::IDENTITY, 1e-5) && frame.determinant() > 0.0);
-            let seen = dome.seen_uv(place, frame.transpose() * view) * 2.0 - Vec2::ONE;
-            let depth = (dome.radius * dome.radius - place.length_squared()).sqrt() - (dome.radius - height());
-            assert!(seen.distance(place - view.truncate() * (depth / view.z)) < 1e-5, "{place}: {seen}");
+            let seen = dome.seen_uv(point, frame.transpose() * view) * 2.0 - Vec2::ONE;
+            let depth = (dome.radius * dome.radius - point.length_squared()).sqrt() - (dome.radius - height());
+            assert!(seen.distance(point - view.truncate() * (depth / view.z)) < 1e-5, "{point}: {seen}");
         }
-        for place in [Vec2::new(0.9, 0.0), Dome::place_at(Vec2::new(7.0, -3.0))] {
-            let seen = DOME.seen_uv(place, Vec3::new(-0.9, 0.0, 0.19_f32.sqrt()));
+        for point in [Vec2::new(0.9, 0.0), Dome::point_at(Vec2::new(7.0, -3.0))] {
+            let seen = DOME.seen_uv(point, Vec3::new(-0.9, 0.0, 0.19_f32.sqrt()));
             assert!((seen * 2.0 - Vec2::ONE).length() <= 1.00001, "{seen}");
         }
     }

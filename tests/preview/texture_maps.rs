@@ -225,9 +225,9 @@ fn a_dome_without_refraction_shows_the_flat_picture_below_it_in_every_renderer()
     // Stripes that fade to black before the edge: beyond its base a dome shows the edge
     const SIDE: usize = 128;
     let code = |i: usize| {
-        let place = Vec2::new((i % SIDE) as f32, (i / SIDE) as f32) * (2.0 / SIDE as f32) - Vec2::ONE;
-        let fade = (1.0 - place.length() / 0.9).clamp(0.0, 1.0).sqrt();
-        let stripe = 0.5 + 0.5 * (place.x * 9.0 + place.y * 4.0).sin();
+        let point = Vec2::new((i % SIDE) as f32, (i / SIDE) as f32) * (2.0 / SIDE as f32) - Vec2::ONE;
+        let fade = (1.0 - point.length() / 0.9).clamp(0.0, 1.0).sqrt();
+        let stripe = 0.5 + 0.5 * (point.x * 9.0 + point.y * 4.0).sin();
         [(255.0 * fade * stripe) as u8, (200.0 * fade) as u8, (200.0 * fade * (1.0 - stripe)) as u8]
     };
     let mut assets = Assets::default();

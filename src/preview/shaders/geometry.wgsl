@@ -84,9 +84,9 @@ fn fragment(in: VertexOutput, @builtin(front_facing) front: bool) -> FragmentOut
     if TEXTURES > 1u {
         // Under a dome the textures are seen by refraction
         let frame = tangent_frame(normalize(normal), d1, d2, dpdx(in.uvs.xy), dpdy(in.uvs.xy));
-        let place = dome_place(in.uvs.xy);
-        world_from_base = frame * transpose(dome_tangents(place));
-        let seen = vec4f(seen_through_dome(place, normalize(to_eye) * frame), in.uvs.zw);
+        let point = dome_point(in.uvs.xy);
+        world_from_base = frame * transpose(dome_tangents(point));
+        let seen = vec4f(seen_through_dome(point, normalize(to_eye) * frame), in.uvs.zw);
         uvs = select(in.uvs, seen, has_dome);
     }
     if TEXTURES > 0u {

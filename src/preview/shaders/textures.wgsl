@@ -23,27 +23,27 @@ fn slot_uv(slot: u32, uvs: vec4f) -> vec2f {
     return m.xy * uv.x + m.zw * uv.y + select(offsets.xy, offsets.zw, (slot & 1u) != 0u);
 }
 
-// Returns the place on the dome for texture coordinates; twin of `Dome::place_at`.
-fn dome_place(uv: vec2f) -> vec2f {
-    let place = uv * 2.0 - 1.0;
-    return place * min(1.0, 0.999 / max(length(place), 1e-6));
+// Returns the point on the dome at texture coordinates; twin of `Dome::point_at`.
+fn dome_point(uv: vec2f) -> vec2f {
+    let point = uv * 2.0 - 1.0;
+    return point * min(1.0, 0.999 / max(length(point), 1e-6));
 }
 
-// Returns the tangent frame of the dome at a place; twin of `Dome::frame`.
-fn dome_tangents(place: vec2f) -> mat3x3f {
-    let above_centre = sqrt(max(draw.dome.x * draw.dome.x - dot(place, place), 0.0));
-    let normal = vec3f(place, above_centre) / draw.dome.x;
-    let along_u = normalize(vec3f(above_centre, 0.0, -place.x));
+// Returns the tangent frame of the dome at a point; twin of `Dome::frame`.
+fn dome_tangents(point: vec2f) -> mat3x3f {
+    let above_centre = sqrt(max(draw.dome.x * draw.dome.x - dot(point, point), 0.0));
+    let normal = vec3f(point, above_centre) / draw.dome.x;
+    let along_u = normalize(vec3f(above_centre, 0.0, -point.x));
     return mat3x3f(along_u, cross(normal, along_u), normal);
 }
 
-// Returns the texture coordinates that are seen at a place on the dome; twin of `Dome::seen_uv`.
-fn seen_through_dome(place: vec2f, view_dir: vec3f) -> vec2f {
+// Returns the texture coordinates that are seen at a point on the dome; twin of `Dome::seen_uv`.
+fn seen_through_dome(point: vec2f, view_dir: vec3f) -> vec2f {
     let squared = draw.dome.x * draw.dome.x;
     let aside = view_dir.xy / draw.dome.y;
-    let refracted = dome_tangents(place) * vec3f(-aside, -sqrt(max(1.0 - dot(aside, aside), 0.0)));
-    let height = max(sqrt(max(squared - dot(place, place), 0.0)) - sqrt(squared - 1.0), 0.0);
-    let seen = place + refracted.xy * (height / max(-refracted.z, 0.05));
+    let refracted = dome_tangents(point) * vec3f(-aside, -sqrt(max(1.0 - dot(aside, aside), 0.0)));
+    let height = max(sqrt(max(squared - dot(point, point), 0.0)) - sqrt(squared - 1.0), 0.0);
+    let seen = point + refracted.xy * (height / max(-refracted.z, 0.05));
     return seen * min(1.0, 1.0 / max(length(seen), 1e-6)) * 0.5 + 0.5;
 }
 
