@@ -51,9 +51,9 @@ impl RowShape {
         self.blocks * self.stride()
     }
 
-    /// Returns a row of zeros.
-    pub fn zeros(self) -> Vec<Block> {
-        vec![Block::ZERO; self.len()]
+    /// Returns rows of zeros.
+    pub fn zeros(self, rows: usize) -> Vec<Block> {
+        vec![Block::ZERO; rows * self.len()]
     }
 
     /// Returns the pixels of a block with those left and right of them: index 0 is the pixel at x = -1.
@@ -102,32 +102,58 @@ impl FeatureMap {
     }
 }
 
-/// The last rows that a convolution has made, for the next one.
+/// Two rows of output; the second is not wanted below a map of odd height.
+#[derive(Debug)]
+pub struct Output<'a> {
+    /// The rows.
+    pub rows: [Option<&'a mut [Block]>; 2],
+    /// Their shape.
+    pub shape: RowShape,
+}
+
+impl<'a> Output<'a> {
+    /// Returns the output to the next one or two rows of a map.
+    pub fn of(rows: &'a mut [Block], shape: RowShape) -> Self {
+        let (first, second) = rows.split_at_mut(shape.len());
+        Output { rows: [Some(first), Some(second).filter(|row| !row.is_empty())], shape }
+    }
+}
+
+/// The last rows that a convolution has made, for the next one: three pairs.
 #[derive(Debug)]
 pub struct RowRing {
-    rows: Vec<(Option<isize>, Vec<Block>)>,
+    shape: RowShape,
+    /// The upper row of each pair, if it has been made.
+    made: [Option<isize>; RowRing::PAIRS],
+    rows: Vec<Block>,
 }
 
 impl RowRing {
-    /// Creates a ring that holds `count` rows.
-    pub fn new(shape: RowShape, count: usize) -> Self {
-        RowRing { rows: (0..count).map(|_| (None, shape.zeros())).collect() }
+    const PAIRS: usize = 3;
+
+    /// Creates a ring without rows.
+    pub fn new(shape: RowShape) -> Self {
+        RowRing { shape, made: [None; RowRing::PAIRS], rows: shape.zeros(2 * RowRing::PAIRS) }
     }
 
-    fn slot(&self, y: isize) -> usize {
-        y.rem_euclid(self.rows.len() as isize).unsigned_abs()
+    /// Returns the index of the pair with row `y`, and its upper row.
+    fn pair(y: isize) -> (usize, isize) {
+        let pair = y.div_euclid(2);
+        (pair.rem_euclid(RowRing::PAIRS as isize).unsigned_abs(), 2 * pair)
     }
 
-    /// Returns the buffer for row `y`, which replaces the oldest. Its border is zero.
-    pub fn next(&mut self, y: isize) -> &mut [Block] {
-        let slot = self.slot(y);
-        self.rows[slot].0 = Some(y);
-        &mut self.rows[slot].1
+    /// Returns the buffer for rows `y` and `y + 1`, with `y` even, which replace the oldest. Their borders are zero.
+    pub fn next(&mut self, y: isize) -> Output<'_> {
+        let (pair, upper) = RowRing::pair(y);
+        self.made[pair] = Some(upper);
+        let len = 2 * self.shape.len();
+        Output::of(&mut self.rows[pair * len..(pair + 1) * len], self.shape)
     }
 
     /// Returns row `y`; none if it has not been made.
     pub fn row(&self, y: isize) -> Option<&[Block]> {
-        let (held, row) = &self.rows[self.slot(y)];
-        (*held == Some(y)).then_some(row)
+        let (pair, upper) = RowRing::pair(y);
+        let start = (2 * pair + usize::from(y != upper)) * self.shape.len();
+        (self.made[pair] == Some(upper)).then(|| &self.rows[start..start + self.shape.len()])
     }
 }

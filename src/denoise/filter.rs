@@ -1,40 +1,79 @@
-//! The weights of a filter, in the order in which the inner loop reads them.
+//! The weights of a filter, transformed for Winograd's convolution, in the order in which the inner loop reads them.
 
 use super::feature_map::{BLOCK, Block};
 
-/// Weights of a convolution: for each block of output channels, tap by tap, the weights of each input channel.
-#[derive(Debug)]
-pub struct PackedFilter {
-    bias: Vec<Block>,
-    weights: Vec<Block>,
-    /// Input channels of each tap.
-    tap_channels: Vec<usize>,
-    /// Index of each tap's first weights in those of an output block; at the end, the number of weights of a block.
-    tap_starts: Vec<usize>,
+/// Side of a filter.
+pub const SIDE: usize = 3;
+/// Values of a transformed tile: 4x4.
+pub const POSITIONS: usize = 16;
+
+/// A block of input channels that has products at a position.
+#[derive(Clone, Copy, Debug)]
+pub struct Tap {
+    /// Index of the block among those of all maps.
+    pub block: usize,
+    /// Channels of the block.
+    pub channels: usize,
 }
 
-impl PackedFilter {
-    /// Packs a filter with a bias for each output channel and taps of at most 16 input channels each.
-    /// `weight(output, tap, input)` is the weight of a channel.
-    pub fn new(bias: &[f32], tap_channels: Vec<usize>, weight: impl Fn(usize, usize, usize) -> f32) -> Self {
+/// Transformed weights of a convolution.
+#[derive(Debug)]
+pub struct TransformedFilter {
+    bias: Vec<Block>,
+    input_blocks: usize,
+    positions: Vec<Position>,
+}
+
+/// The weights at a position of a transformed tile.
+#[derive(Debug)]
+struct Position {
+    taps: Vec<Tap>,
+    /// For each block of output channels, tap by tap, the weights of each input channel.
+    weights: Vec<Block>,
+    /// Number of weights of a block of output channels.
+    stride: usize,
+}
+
+impl TransformedFilter {
+    /// Transforms a filter with a bias for each output channel on blocks of at most 16 input channels, of which the first
+    /// `doubled` are of a map whose pixels are doubled. `weights(output, input)` are those of a channel, counted over all
+    /// blocks.
+    pub fn new(
+        bias: &[f32],
+        channels: &[usize],
+        doubled: usize,
+        weights: impl Fn(usize, usize) -> [[f32; SIDE]; SIDE],
+    ) -> Self {
+        let (blocks, inputs) = (bias.len().div_ceil(BLOCK), channels.iter().sum::<usize>());
         let of_block = |block: usize, value: &dyn Fn(usize) -> f32| {
             let channel = |i: usize| block * BLOCK + i;
             Block(std::array::from_fn(|i| if channel(i) < bias.len() { value(channel(i)) } else { 0.0 }))
         };
-        let blocks = bias.len().div_ceil(BLOCK);
-        let mut weights = Vec::new();
-        for block in 0..blocks {
-            for (tap, channels) in tap_channels.iter().enumerate() {
-                weights.extend((0..*channels).map(|input| of_block(block, &|output| weight(output, tap, input))));
+        let pairs = (0..bias.len()).flat_map(|output| (0..inputs).map(move |input| (output, input)));
+        let transformed: Vec<_> = pairs.map(|(output, input)| transformed(&weights(output, input))).collect();
+        let position = |position: usize| {
+            // Where doubled pixels give zero, there are no products
+            let is_zero = |block: usize| block < doubled && (position / 4 == 2 || position % 4 == 2);
+            let all = channels.iter().enumerate().map(|(block, &channels)| Tap { block, channels });
+            let taps: Vec<Tap> = all.filter(|tap| !is_zero(tap.block)).collect();
+            let stride = taps.iter().map(|tap| tap.channels).sum();
+            let mut weights = Vec::with_capacity(blocks * stride);
+            for block in 0..blocks {
+                let weight = |output: usize, input: usize| transformed[output * inputs + input][position];
+                weights.extend((inputs - stride..inputs).map(|input| of_block(block, &|output| weight(output, input))));
             }
+            Position { taps, weights, stride }
+        };
+        TransformedFilter {
+            bias: (0..blocks).map(|block| of_block(block, &|output| bias[output])).collect(),
+            input_blocks: channels.len(),
+            positions: (0..POSITIONS).map(position).collect(),
         }
-        let mut tap_starts = vec![0];
-        tap_starts.extend(tap_channels.iter().scan(0, |sum, channels| {
-            *sum += channels;
-            Some(*sum)
-        }));
-        let bias = (0..blocks).map(|block| of_block(block, &|output| bias[output])).collect();
-        PackedFilter { bias, weights, tap_channels, tap_starts }
+    }
+
+    /// Number of blocks of input channels.
+    pub fn input_blocks(&self) -> usize {
+        self.input_blocks
     }
 
     /// Number of blocks of output channels.
@@ -47,20 +86,29 @@ impl PackedFilter {
         &self.bias[block]
     }
 
-    /// The weights of an output block, for all taps.
+    /// The blocks of input that have products at a position.
     #[inline]
-    pub fn weights(&self, block: usize) -> &[Block] {
-        let count = self.tap_starts[self.tap_channels.len()];
-        &self.weights[block * count..(block + 1) * count]
+    pub fn taps(&self, position: usize) -> &[Tap] {
+        &self.positions[position].taps
     }
 
-    /// Index of a tap's first weights in those of an output block.
-    pub fn tap_start(&self, tap: usize) -> usize {
-        self.tap_starts[tap]
+    /// The weights of an output block at a position, for all taps.
+    #[inline]
+    pub fn weights(&self, position: usize, block: usize) -> &[Block] {
+        let Position { weights, stride, .. } = &self.positions[position];
+        &weights[block * stride..(block + 1) * stride]
     }
+}
 
-    /// Input channels of a tap.
-    pub fn tap_channels(&self, tap: usize) -> usize {
-        self.tap_channels[tap]
-    }
+/// Returns G g G', by rows, summed in f64.
+fn transformed(filter: &[[f32; SIDE]; SIDE]) -> [f32; POSITIONS] {
+    let filter = filter.map(|row| row.map(f64::from));
+    let columns: [[f64; 4]; SIDE] = std::array::from_fn(|x| times_g(filter.map(|row| row[x])));
+    let rows: [[f64; 4]; 4] = std::array::from_fn(|i| times_g(columns.map(|column| column[i])));
+    std::array::from_fn(|position| rows[position / 4][position % 4] as f32)
+}
+
+/// Returns G times a column.
+fn times_g([a, b, c]: [f64; SIDE]) -> [f64; 4] {
+    [a, 0.5 * (a + b + c), 0.5 * (a - b + c), c]
 }

@@ -9,8 +9,9 @@
 //! |---|---|
 //! | `weight_file` | reader of the weights |
 //! | `transfer` | encoding of radiance for the network |
-//! | `feature_map`, `filter`, `convolution` | features in blocks of 16 channels, packed weights, rows of convolutions |
-//! | `simd` | the inner loop for each instruction set |
+//! | `feature_map`, `filter`, `convolution` | features in blocks of 16 channels, transformed weights, convolutions |
+//! | `winograd` | pairs of rows of a convolution |
+//! | `simd` | registers of each instruction set |
 //! | `network` | the layers |
 //! | `tiles` | pictures that are too large for one run |
 //! | `layers` | light layers that sum to the denoised picture |
@@ -26,6 +27,7 @@ mod tests;
 mod tiles;
 mod transfer;
 mod weight_file;
+mod winograd;
 
 pub use layers::{DenoisedLayers, denoise_layers};
 pub use network::Cancelled;

@@ -12,18 +12,22 @@
 //! The rows between the convolutions of full size (enc 0, 1 and dec 1a, 1b, 0) are kept only as long as the next one
 //! needs them, so that they stay in the cache of the core that made them.
 
-use super::convolution::{Convolution, InputRows, Kernel, Output, UpsamplingConvolution};
-use super::feature_map::{Block, FeatureMap, RowRing, RowShape};
+use super::convolution::{Convolution, Kernel, around, around_half};
+use super::feature_map::{Block, FeatureMap, Output, RowRing, RowShape};
 use super::simd::InstructionSet;
 use super::weight_file::{WeightError, WeightFile};
+use super::winograd::Scratch;
 use rayon::prelude::*;
 
 /// Channels of the input: colour, albedo and normal.
 pub const INPUT_CHANNELS: usize = 9;
 /// Number by which width and height of the input are divisible: the network halves them four times.
 pub const ALIGNMENT: usize = 16;
+/// Pixels by which a picture can be shifted without a change of its bits: a tile of a convolution at a sixteenth of the
+/// size.
+pub const PERIOD: usize = 2 * ALIGNMENT;
 /// Rows that a thread computes at once in the stages of full size. The first ones repeat rows of the band above.
-const BAND: usize = 32;
+const BAND: usize = 64;
 
 /// The convolutions with their weights.
 #[derive(Debug)]
@@ -36,8 +40,8 @@ pub struct Network {
     /// enc 5a, 5b.
     bottom: [Convolution; 2],
     /// dec 4, 3, 2: the first convolution of each on two maps, then one on its result.
-    decoders: [(UpsamplingConvolution, Convolution); 3],
-    decoder_1a: UpsamplingConvolution,
+    decoders: [(Convolution, Convolution); 3],
+    decoder_1a: Convolution,
     decoder_1b: Convolution,
     decoder_0: Convolution,
 }
@@ -52,10 +56,10 @@ impl Network {
     /// # Errors
     /// If weights are missing or do not fit together.
     pub fn new(file: &WeightFile, set: InstructionSet) -> Result<Self, WeightError> {
-        let plain = |name: &str, inputs: usize| Kernel::read(file, name, inputs).map(Convolution::new);
+        let plain =
+            |name: &str, inputs: usize| Kernel::read(file, name, inputs).map(|kernel| Convolution::new(kernel, 0));
         let upsampling = |name: &str, coarse: usize, fine: usize| {
-            let kernel = Kernel::read(file, name, coarse + fine)?;
-            Ok(UpsamplingConvolution::new(kernel, coarse))
+            Kernel::read(file, name, coarse + fine).map(|kernel| Convolution::new(kernel, coarse))
         };
         let encoder_0 = plain("enc_conv0", INPUT_CHANNELS)?;
         let encoder_1 = plain("enc_conv1", encoder_0.outputs())?;
@@ -125,9 +129,10 @@ impl Network {
     fn plain(&self, convolution: &Convolution, input: &FeatureMap) -> FeatureMap {
         let mut output = FeatureMap::new(input.shape.width, input.height, convolution.outputs());
         let shape = output.shape;
-        output.data_mut().par_chunks_mut(shape.len()).enumerate().for_each(|(y, row)| {
-            let rows = around(y as isize, |y| input.row(y));
-            convolution.row(self.set, true, input.shape, rows, &mut Output { row, shape });
+        let pairs = output.data_mut().par_chunks_mut(2 * shape.len()).enumerate();
+        pairs.for_each_init(Scratch::default, |scratch, (pair, rows)| {
+            let input = around(input.shape, 2 * pair as isize, |y| input.row(y));
+            convolution.rows(self.set, true, &[input], Output::of(rows, shape), scratch);
         });
         output
     }
@@ -137,37 +142,27 @@ impl Network {
         let shape = RowShape::new(input.shape.width, convolution.outputs());
         let mut output = FeatureMap::new(input.shape.width / 2, input.height / 2, convolution.outputs());
         let half = output.shape;
-        let buffers = || [shape.zeros(), shape.zeros()];
-        output.data_mut().par_chunks_mut(half.len()).enumerate().for_each_init(buffers, |buffers, (y, pooled)| {
-            for (buffer, y) in buffers.iter_mut().zip(2 * y as isize..) {
-                let rows = around(y, |y| input.row(y));
-                convolution.row(self.set, true, input.shape, rows, &mut Output { row: buffer, shape });
-            }
-            max_pool(shape, &buffers[0], &buffers[1], half, pooled);
+        let buffers = || (shape.zeros(2), Scratch::default());
+        let rows = output.data_mut().par_chunks_mut(half.len()).enumerate();
+        rows.for_each_init(buffers, |(buffer, scratch), (y, pooled)| {
+            let input = around(input.shape, 2 * y as isize, |y| input.row(y));
+            convolution.rows(self.set, true, &[input], Output::of(buffer, shape), scratch);
+            max_pool(shape, buffer, half, pooled);
         });
         output
     }
 
     /// Convolves a map of half the size, doubled, together with one of full size.
-    fn upsampled(&self, convolution: &UpsamplingConvolution, coarse: &FeatureMap, fine: &FeatureMap) -> FeatureMap {
+    fn upsampled(&self, convolution: &Convolution, coarse: &FeatureMap, fine: &FeatureMap) -> FeatureMap {
         let mut output = FeatureMap::new(fine.shape.width, fine.height, convolution.outputs());
         let shape = output.shape;
-        output.data_mut().par_chunks_mut(shape.len()).enumerate().for_each(|(y, row)| {
-            self.upsampled_row(convolution, y as isize, coarse, fine, &mut Output { row, shape });
+        let pairs = output.data_mut().par_chunks_mut(2 * shape.len()).enumerate();
+        pairs.for_each_init(Scratch::default, |scratch, (pair, rows)| {
+            let y = 2 * pair as isize;
+            let inputs = [around_half(coarse.shape, y, |y| coarse.row(y)), around(fine.shape, y, |y| fine.row(y))];
+            convolution.rows(self.set, true, &inputs, Output::of(rows, shape), scratch);
         });
         output
-    }
-
-    fn upsampled_row(
-        &self,
-        convolution: &UpsamplingConvolution,
-        y: isize,
-        coarse: &FeatureMap,
-        fine: &FeatureMap,
-        output: &mut Output<'_>,
-    ) {
-        let fine = (fine.shape, around(y, |y| fine.row(y)));
-        convolution.row(self.set, y, (coarse.shape, &|y| coarse.row(y)), fine, output);
     }
 
     /// enc 0 and 1, halved.
@@ -177,25 +172,21 @@ impl Network {
         let second = RowShape::new(width, self.encoder_1.outputs());
         let mut output = FeatureMap::new(width / 2, height / 2, self.encoder_1.outputs());
         let half = output.shape;
-        let rows_of_band = BAND / 2;
-        output.data_mut().par_chunks_mut(half.len() * rows_of_band).enumerate().for_each(|(band, pooled)| {
-            let mut ring = RowRing::new(first, 4);
-            let mut buffers = [second.zeros(), second.zeros()];
+        let bands = output.data_mut().par_chunks_mut(half.len() * BAND / 2).enumerate();
+        bands.for_each_init(Scratch::default, |scratch, (band, pooled)| {
+            let (mut ring, mut buffer) = (RowRing::new(first), second.zeros(2));
             let top = (band * BAND) as isize;
-            let mut made = top - 1;
-            for (pooled, top) in pooled.chunks_mut(half.len()).zip((top..).step_by(2)) {
+            let mut made = top - 2;
+            for (pooled, y) in pooled.chunks_mut(half.len()).zip((top..).step_by(2)) {
                 // Each pair of rows needs the rows from the one above to the one below
-                for y in made.max(0)..(top + 3).min(height as isize) {
-                    let rows = around(y, |y| input.row(y));
-                    let mut output = Output { row: ring.next(y), shape: first };
-                    self.encoder_0.row(self.set, true, input.shape, rows, &mut output);
+                for y in (made.max(0)..(y + 4).min(height as isize)).step_by(2) {
+                    let rows = around(input.shape, y, |y| input.row(y));
+                    self.encoder_0.rows(self.set, true, &[rows], ring.next(y), scratch);
                 }
-                made = top + 3;
-                for (buffer, y) in buffers.iter_mut().zip(top..) {
-                    let rows = around(y, |y| ring.row(y));
-                    self.encoder_1.row(self.set, true, first, rows, &mut Output { row: buffer, shape: second });
-                }
-                max_pool(second, &buffers[0], &buffers[1], half, pooled);
+                made = y + 4;
+                let rows = around(first, y, |y| ring.row(y));
+                self.encoder_1.rows(self.set, true, &[rows], Output::of(&mut buffer, second), scratch);
+                max_pool(second, &buffer, half, pooled);
             }
         });
         output
@@ -213,32 +204,35 @@ impl Network {
         let second = RowShape::new(width, self.decoder_1b.outputs());
         let third = RowShape::new(width, self.decoder_0.outputs());
         let mut output = vec![[0.0; 3]; width * input.height];
-        output.par_chunks_mut(width * BAND).enumerate().for_each(|(band, output)| {
+        let bands = output.par_chunks_mut(width * BAND).enumerate();
+        bands.for_each_init(Scratch::default, |scratch, (band, output)| {
             if is_cancelled() {
                 return;
             }
-            let (mut ring_1a, mut ring_1b) = (RowRing::new(first, 3), RowRing::new(second, 3));
-            let mut last = third.zeros();
+            let (mut ring_1a, mut ring_1b) = (RowRing::new(first), RowRing::new(second));
+            let mut last = third.zeros(2);
             let top = (band * BAND) as isize;
             let bottom = top + (output.len() / width.max(1)) as isize;
-            // Each row of a convolution is made as soon as the rows around it are
-            for step in top - 2..bottom + 2 {
-                let (y_1a, y_1b, y_0) = (step, step - 1, step - 2);
+            // Each pair of rows of a convolution is made as soon as the rows around it are
+            for step in (top - 4..bottom + 4).step_by(2) {
+                let (y_1a, y_1b, y_0) = (step, step - 2, step - 4);
                 if (0..height).contains(&y_1a) {
-                    let mut output = Output { row: ring_1a.next(y_1a), shape: first };
-                    self.upsampled_row(&self.decoder_1a, y_1a, features, input, &mut output);
+                    let coarse = around_half(features.shape, y_1a, |y| features.row(y));
+                    let inputs = [coarse, around(input.shape, y_1a, |y| input.row(y))];
+                    self.decoder_1a.rows(self.set, true, &inputs, ring_1a.next(y_1a), scratch);
                 }
-                if (0..height).contains(&y_1b) && y_1b >= top - 1 {
-                    let rows = around(y_1b, |y| ring_1a.row(y));
-                    let mut output = Output { row: ring_1b.next(y_1b), shape: second };
-                    self.decoder_1b.row(self.set, true, first, rows, &mut output);
+                if (0..height).contains(&y_1b) && y_1b >= top - 2 {
+                    let rows = around(first, y_1b, |y| ring_1a.row(y));
+                    self.decoder_1b.rows(self.set, true, &[rows], ring_1b.next(y_1b), scratch);
                 }
                 if y_0 >= top {
-                    let rows = around(y_0, |y| ring_1b.row(y));
-                    self.decoder_0.row(self.set, false, second, rows, &mut Output { row: &mut last, shape: third });
-                    let pixels = output.chunks_mut(width).nth((y_0 - top).unsigned_abs()).into_iter().flatten();
-                    for (pixel, value) in pixels.zip(third.pixels(&last, 0)) {
-                        *pixel = [value.0[0], value.0[1], value.0[2]];
+                    let rows = around(second, y_0, |y| ring_1b.row(y));
+                    self.decoder_0.rows(self.set, false, &[rows], Output::of(&mut last, third), scratch);
+                    let rows = output.chunks_mut(width).skip((y_0 - top).unsigned_abs());
+                    for (pixels, row) in rows.zip(last.chunks(third.len())) {
+                        for (pixel, value) in pixels.iter_mut().zip(third.pixels(row, 0)) {
+                            *pixel = [value.0[0], value.0[1], value.0[2]];
+                        }
                     }
                 }
             }
@@ -247,13 +241,9 @@ impl Network {
     }
 }
 
-/// Returns the rows above, at and below `y`.
-fn around<'a>(y: isize, row: impl Fn(isize) -> Option<&'a [Block]>) -> InputRows<'a> {
-    [row(y - 1), row(y), row(y + 1)]
-}
-
 /// Stores the largest values of 2x2 pixels.
-fn max_pool(shape: RowShape, upper: &[Block], lower: &[Block], half: RowShape, output: &mut [Block]) {
+fn max_pool(shape: RowShape, rows: &[Block], half: RowShape, output: &mut [Block]) {
+    let (upper, lower) = rows.split_at(shape.len());
     for block in 0..shape.blocks {
         let (upper, lower) =
             (shape.pixels(upper, block).as_chunks::<2>().0, shape.pixels(lower, block).as_chunks::<2>().0);

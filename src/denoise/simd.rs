@@ -1,15 +1,13 @@
-//! The inner loop of the convolutions, in AVX-512, AVX2 with FMA, and portable Rust.
+//! Registers of 16 values in AVX-512, AVX2 with FMA, and portable Rust.
 //!
-//! A tile of the loop computes some pixels of some blocks of 16 output channels, all in registers: 14 pixels of two
-//! blocks with AVX-512, 6 of one with AVX2. Each input value is multiplied by the weights of all output channels of the
-//! tile.
+//! A [`Task`] is compiled for each. A register tile of it, which an inner loop keeps in registers, is as large as these
+//! allow: two blocks of 16 channels times 14 positions with AVX-512, one times six with AVX2.
 //!
-//! Every version adds the products of an output value in the same order. Those with fused multiply-add return the same
-//! bits; the portable one rounds products, too.
-#![expect(unsafe_code, reason = "intrinsics, and reads without bounds checks in the inner loop")]
+//! No version reorders operations. Those with fused multiply-add return the same bits; the portable one rounds products,
+//! too.
+#![expect(unsafe_code, reason = "intrinsics")]
 
-use super::feature_map::{BLOCK, Block};
-use super::filter::PackedFilter;
+use super::feature_map::Block;
 use glam::Vec4;
 #[cfg(target_arch = "x86_64")]
 use std::arch::x86_64::*;
@@ -52,97 +50,64 @@ impl InstructionSet {
     }
 }
 
-/// One position of a filter on one block of input channels.
-#[derive(Clone, Copy, Debug)]
-pub struct Tap<'a> {
-    /// The input of the first output pixel, and of those right of it.
-    pub input: &'a [Block],
-    /// Input channels of the block.
-    pub channels: usize,
-    /// Index of the tap's first weights in those of an output block.
-    pub weights: usize,
+/// A computation that is compiled for each instruction set. What it calls must be `#[inline(always)]`.
+pub trait Task {
+    /// Runs the computation with register tiles of `B` blocks of 16 values times `P` positions.
+    fn run<V: Vector, const B: usize, const P: usize>(self);
 }
 
-/// A row of output pixels.
-#[derive(Debug)]
-pub struct RowTask<'a> {
-    /// The weights.
-    pub filter: &'a PackedFilter,
-    /// Taps whose input advances one pixel for each output pixel.
-    pub single: &'a [Tap<'a>],
-    /// Taps whose input advances two pixels for each output pixel.
-    pub double: &'a [Tap<'a>],
-    /// Number of output pixels.
-    pub count: usize,
-    /// Negative values become zero.
-    pub relu: bool,
-    /// Output, from the first pixel of the first block on.
-    pub output: &'a mut [Block],
-    /// Distance between two output pixels.
-    pub output_step: usize,
-    /// Distance between two output blocks.
-    pub output_stride: usize,
-}
-
-impl RowTask<'_> {
-    /// Computes the row.
-    ///
-    /// # Panics
-    /// If a tap has less input than output pixels and 28 more.
-    pub fn run(&mut self, set: InstructionSet) {
-        assert!(set.is_supported(), "{set:?} is not supported");
-        match set {
-            #[cfg(target_arch = "x86_64")]
-            // SAFETY: the assertion has checked that the CPU supports it.
-            InstructionSet::Avx512 => unsafe { run_avx512(self) },
-            #[cfg(target_arch = "x86_64")]
-            // SAFETY: the assertion has checked that the CPU supports it.
-            InstructionSet::Avx2 => unsafe { run_avx2(self) },
-            _ => run::<Portable, 1, 2>(self),
-        }
+/// Runs a task.
+///
+/// # Panics
+/// If the CPU does not support the instruction set.
+pub fn run(set: InstructionSet, task: impl Task) {
+    assert!(set.is_supported(), "{set:?} is not supported");
+    match set {
+        #[cfg(target_arch = "x86_64")]
+        // SAFETY: the assertion has checked that the CPU supports it.
+        InstructionSet::Avx512 => unsafe { run_avx512(task) },
+        #[cfg(target_arch = "x86_64")]
+        // SAFETY: the assertion has checked that the CPU supports it.
+        InstructionSet::Avx2 => unsafe { run_avx2(task) },
+        _ => task.run::<Portable, 1, 2>(),
     }
 }
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx512f")]
-fn run_avx512(task: &mut RowTask<'_>) {
-    run::<Avx512, 2, 14>(task);
+fn run_avx512(task: impl Task) {
+    task.run::<Avx512, 2, 14>();
 }
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2,fma")]
-fn run_avx2(task: &mut RowTask<'_>) {
-    run::<Avx2, 1, 6>(task);
+fn run_avx2(task: impl Task) {
+    task.run::<Avx2, 1, 6>();
 }
 
 /// 16 values in registers. `inline(always)`, so that they are compiled for the instruction set of their caller.
-trait Vector: Copy {
+pub trait Vector: Copy {
+    /// Zero in every value.
+    const ZERO: Self;
+    /// Returns the values of a block.
     fn load(values: &Block) -> Self;
+    /// Stores the values.
     fn store(self, values: &mut Block);
+    /// Returns `self + other`.
+    fn add(self, other: Self) -> Self;
+    /// Returns `self - other`.
+    fn subtract(self, other: Self) -> Self;
     /// Returns `self + weights * input`.
     fn add_product(self, weights: Self, input: f32) -> Self;
     /// Returns 0 for negative values.
     fn relu(self) -> Self;
 }
 
-/// Computes tiles of `B` output blocks and `P` pixels, and of one block for the rest.
-#[inline(always)]
-fn run<V: Vector, const B: usize, const P: usize>(task: &mut RowTask<'_>) {
-    let blocks = task.filter.output_blocks();
-    let wide = blocks / B * B;
-    for block in (0..wide).step_by(B) {
-        tiles::<V, B, P>(task, block);
-    }
-    for block in wide..blocks {
-        tiles::<V, 1, P>(task, block);
-    }
-}
-
-/// Repeats a body for each index below a constant limit of at most 14, as a loop would. The compiler does not unroll a
+/// Repeats a body for each index below a constant limit of at most 16, as a loop would. The compiler does not unroll a
 /// loop as long as this, and without that keeps the sums in memory.
 macro_rules! unrolled {
     ($index:ident < $limit:expr, $body:block) => {
-        unrolled!($index < $limit, $body, 0 1 2 3 4 5 6 7 8 9 10 11 12 13)
+        unrolled!($index < $limit, $body, 0 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15)
     };
     ($index:ident < $limit:expr, $body:block, $($value:literal)*) => {
         $(if $value < $limit {
@@ -151,59 +116,15 @@ macro_rules! unrolled {
         })*
     };
 }
-
-#[inline(always)]
-fn tiles<V: Vector, const B: usize, const P: usize>(task: &mut RowTask<'_>, block: usize) {
-    let weights: [&[Block]; B] = std::array::from_fn(|b| task.filter.weights(block + b));
-    for first in (0..task.count).step_by(P) {
-        let mut sums: [[V; P]; B] = std::array::from_fn(|b| [V::load(task.filter.bias(block + b)); P]);
-        for tap in task.single {
-            add_tap::<V, B, P, 1>(&mut sums, tap, first, &weights);
-        }
-        for tap in task.double {
-            add_tap::<V, B, P, 2>(&mut sums, tap, 2 * first, &weights);
-        }
-        for (b, sums) in sums.iter().enumerate() {
-            let output = &mut task.output[(block + b) * task.output_stride..];
-            unrolled!(PIXEL < P, {
-                if first + PIXEL < task.count {
-                    let value = if task.relu { sums[PIXEL].relu() } else { sums[PIXEL] };
-                    value.store(&mut output[(first + PIXEL) * task.output_step]);
-                }
-            });
-        }
-    }
-}
-
-/// Adds the products of a tap. The input advances `STEP` pixels for each output pixel.
-#[inline(always)]
-fn add_tap<V: Vector, const B: usize, const P: usize, const STEP: usize>(
-    sums: &mut [[V; P]; B],
-    tap: &Tap<'_>,
-    first: usize,
-    weights: &[&[Block]; B],
-) {
-    let input = &tap.input[first..first + (P - 1) * STEP + 1];
-    let channels = tap.channels.min(BLOCK);
-    let weights: [&[Block]; B] = std::array::from_fn(|b| &weights[b][tap.weights..tap.weights + channels]);
-    for channel in 0..channels {
-        // SAFETY: `weights` has `channels` entries.
-        let row: [V; B] = std::array::from_fn(|b| V::load(unsafe { weights[b].get_unchecked(channel) }));
-        unrolled!(PIXEL < P, {
-            // SAFETY: `input` has (P - 1) * STEP + 1 pixels of BLOCK channels.
-            let value = unsafe { *input.get_unchecked(PIXEL * STEP).0.get_unchecked(channel) };
-            for b in 0..B {
-                sums[b][PIXEL] = sums[b][PIXEL].add_product(row[b], value);
-            }
-        });
-    }
-}
+pub(super) use unrolled;
 
 /// Four registers of four numbers, which any x86-64 CPU (SSE2) and 64-bit ARM (NEON) have.
 #[derive(Clone, Copy)]
 struct Portable([Vec4; 4]);
 
 impl Vector for Portable {
+    const ZERO: Self = Portable([Vec4::ZERO; 4]);
+
     #[inline(always)]
     fn load(values: &Block) -> Self {
         let [a, b, c, d] = [0, 4, 8, 12].map(|first| Vec4::from_slice(&values.0[first..first + 4]));
@@ -215,6 +136,16 @@ impl Vector for Portable {
         for (quarter, values) in self.0.iter().zip(values.0.chunks_exact_mut(4)) {
             quarter.write_to_slice(values);
         }
+    }
+
+    #[inline(always)]
+    fn add(self, other: Self) -> Self {
+        Portable(std::array::from_fn(|i| self.0[i] + other.0[i]))
+    }
+
+    #[inline(always)]
+    fn subtract(self, other: Self) -> Self {
+        Portable(std::array::from_fn(|i| self.0[i] - other.0[i]))
     }
 
     #[inline(always)]
@@ -238,6 +169,9 @@ struct Avx512(__m512);
 
 #[cfg(target_arch = "x86_64")]
 impl Vector for Avx512 {
+    // SAFETY: all bits of a register may be zero.
+    const ZERO: Self = Avx512(unsafe { std::mem::zeroed() });
+
     #[inline(always)]
     fn load(values: &Block) -> Self {
         // SAFETY: 16 floats are read from an array of 16; only code compiled for AVX-512 uses this type.
@@ -248,6 +182,18 @@ impl Vector for Avx512 {
     fn store(self, values: &mut Block) {
         // SAFETY: 16 floats are written to an array of 16; only code compiled for AVX-512 uses this type.
         unsafe { _mm512_storeu_ps(values.0.as_mut_ptr(), self.0) };
+    }
+
+    #[inline(always)]
+    fn add(self, other: Self) -> Self {
+        // SAFETY: only code compiled for AVX-512 uses this type.
+        Avx512(unsafe { _mm512_add_ps(self.0, other.0) })
+    }
+
+    #[inline(always)]
+    fn subtract(self, other: Self) -> Self {
+        // SAFETY: only code compiled for AVX-512 uses this type.
+        Avx512(unsafe { _mm512_sub_ps(self.0, other.0) })
     }
 
     #[inline(always)]
@@ -270,6 +216,9 @@ struct Avx2([__m256; 2]);
 
 #[cfg(target_arch = "x86_64")]
 impl Vector for Avx2 {
+    // SAFETY: all bits of a register may be zero.
+    const ZERO: Self = Avx2(unsafe { std::mem::zeroed() });
+
     #[inline(always)]
     fn load(values: &Block) -> Self {
         let (low, high) = values.0.split_at(8);
@@ -285,6 +234,18 @@ impl Vector for Avx2 {
             _mm256_storeu_ps(low.as_mut_ptr(), self.0[0]);
             _mm256_storeu_ps(high.as_mut_ptr(), self.0[1]);
         }
+    }
+
+    #[inline(always)]
+    fn add(self, other: Self) -> Self {
+        // SAFETY: only code compiled for AVX2 and FMA uses this type.
+        Avx2(unsafe { [_mm256_add_ps(self.0[0], other.0[0]), _mm256_add_ps(self.0[1], other.0[1])] })
+    }
+
+    #[inline(always)]
+    fn subtract(self, other: Self) -> Self {
+        // SAFETY: only code compiled for AVX2 and FMA uses this type.
+        Avx2(unsafe { [_mm256_sub_ps(self.0[0], other.0[0]), _mm256_sub_ps(self.0[1], other.0[1])] })
     }
 
     #[inline(always)]

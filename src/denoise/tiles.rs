@@ -4,7 +4,7 @@
 //! are those of one run, bit for bit.
 
 use super::feature_map::{Block, FeatureMap, LEFT};
-use super::network::{ALIGNMENT, Cancelled, INPUT_CHANNELS, Network};
+use super::network::{ALIGNMENT, Cancelled, INPUT_CHANNELS, Network, PERIOD};
 use super::transfer;
 use crate::photo::{AovPicture, Picture};
 use rayon::prelude::*;
@@ -12,7 +12,7 @@ use std::ops::Range;
 
 /// Largest number of pixels of a run: half a gigabyte.
 pub const MAX_PIXELS: usize = 1 << 21;
-/// Pixels that influence a pixel on each side: 80 by the sizes of filters and pools, plus one alignment.
+/// Pixels that influence a pixel on each side: 80 by the sizes of filters and pools, rounded up to the network's period.
 const OVERLAP: usize = 96;
 
 /// The output pixels of a tile along one axis, and the input that they need.
@@ -22,9 +22,9 @@ struct Span {
     input: Range<usize>,
 }
 
-/// Divides an axis of `length` pixels into a number of spans, aligned to the network's pools.
+/// Divides an axis of `length` pixels into a number of spans, aligned to the network's period.
 fn spans(length: usize, count: usize) -> Vec<Span> {
-    let size = length.div_ceil(count.max(1)).next_multiple_of(ALIGNMENT).max(ALIGNMENT);
+    let size = length.div_ceil(count.max(1)).next_multiple_of(PERIOD).max(PERIOD);
     let span = |start: usize| {
         let output = start..(start + size).min(length);
         let input = output.start.saturating_sub(OVERLAP)..(output.end + OVERLAP).min(length);
@@ -127,7 +127,7 @@ mod tests {
             let covered: Vec<usize> = spans.iter().flat_map(|span| span.output.clone()).collect();
             assert_eq!(covered, (0..length).collect::<Vec<_>>());
             for span in spans {
-                assert_eq!(span.input.start % ALIGNMENT, 0, "pools of a tile are those of the picture");
+                assert_eq!(span.input.start % PERIOD, 0, "pools of a tile are those of the picture");
                 assert_eq!(span.input.start, span.output.start.saturating_sub(OVERLAP));
                 assert_eq!(span.input.end, (span.output.end + OVERLAP).min(length));
             }
