@@ -15,7 +15,7 @@ use std::time::Instant;
 pub enum Denoise {
     /// The whole network.
     On,
-    /// The small network, in half the time.
+    /// The small network, in two thirds of the time.
     Fast,
     /// No denoiser.
     #[default]

@@ -43,7 +43,7 @@ use weight_file::{WeightError, WeightFile};
 pub enum Quality {
     /// 0.9 million weights.
     Best,
-    /// 0.3 million weights: in half the time, less detail.
+    /// 0.3 million weights: in two thirds of the time, less detail.
     Fast,
 }
 
