@@ -78,8 +78,7 @@ impl Convolution {
         output: Output<'_>,
         scratch: &mut Scratch,
     ) {
-        let Output { rows, shape } = output;
-        simd::run(set, RowPair { filter: &self.filter, inputs, relu, output: rows, shape, scratch });
+        simd::run(set, RowPair { filter: &self.filter, inputs, relu, output, scratch });
     }
 }
 

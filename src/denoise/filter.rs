@@ -9,9 +9,9 @@ pub const POSITIONS: usize = 16;
 
 /// A block of input channels that has products at a position.
 #[derive(Clone, Copy, Debug)]
-pub struct Tap {
-    /// Index of the block among those of all maps.
-    pub block: usize,
+pub struct InputBlock {
+    /// Index among the blocks of all maps.
+    pub index: usize,
     /// Channels of the block.
     pub channels: usize,
 }
@@ -27,8 +27,8 @@ pub struct TransformedFilter {
 /// The weights at a position of a transformed tile.
 #[derive(Debug)]
 struct Position {
-    taps: Vec<Tap>,
-    /// For each block of output channels, tap by tap, the weights of each input channel.
+    inputs: Vec<InputBlock>,
+    /// For each block of output channels, the weights of each input channel.
     weights: Vec<Block>,
     /// Number of weights of a block of output channels.
     stride: usize,
@@ -54,15 +54,15 @@ impl TransformedFilter {
         let position = |position: usize| {
             // Where doubled pixels give zero, there are no products
             let is_zero = |block: usize| block < doubled && (position / 4 == 2 || position % 4 == 2);
-            let all = channels.iter().enumerate().map(|(block, &channels)| Tap { block, channels });
-            let taps: Vec<Tap> = all.filter(|tap| !is_zero(tap.block)).collect();
-            let stride = taps.iter().map(|tap| tap.channels).sum();
+            let all = channels.iter().enumerate().map(|(index, &channels)| InputBlock { index, channels });
+            let seen: Vec<InputBlock> = all.filter(|block| !is_zero(block.index)).collect();
+            let stride = seen.iter().map(|block| block.channels).sum();
             let mut weights = Vec::with_capacity(blocks * stride);
             for block in 0..blocks {
                 let weight = |output: usize, input: usize| transformed[output * inputs + input][position];
                 weights.extend((inputs - stride..inputs).map(|input| of_block(block, &|output| weight(output, input))));
             }
-            Position { taps, weights, stride }
+            Position { inputs: seen, weights, stride }
         };
         TransformedFilter {
             bias: (0..blocks).map(|block| of_block(block, &|output| bias[output])).collect(),
@@ -88,11 +88,11 @@ impl TransformedFilter {
 
     /// The blocks of input that have products at a position.
     #[inline]
-    pub fn taps(&self, position: usize) -> &[Tap] {
-        &self.positions[position].taps
+    pub fn input_blocks_at(&self, position: usize) -> &[InputBlock] {
+        &self.positions[position].inputs
     }
 
-    /// The weights of an output block at a position, for all taps.
+    /// The weights of an output block at a position, for all channels of those blocks of input.
     #[inline]
     pub fn weights(&self, position: usize, block: usize) -> &[Block] {
         let Position { weights, stride, .. } = &self.positions[position];

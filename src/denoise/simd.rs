@@ -12,7 +12,7 @@ use glam::Vec4;
 #[cfg(target_arch = "x86_64")]
 use std::arch::x86_64::*;
 
-/// A version of the loop.
+/// A set of registers and instructions for which tasks are compiled.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum InstructionSet {
     /// 512-bit registers.
@@ -24,13 +24,13 @@ pub enum InstructionSet {
 }
 
 impl InstructionSet {
-    /// Returns the versions that this CPU can run, the fastest first.
+    /// Returns those that this CPU supports, the fastest first.
     pub fn supported() -> Vec<InstructionSet> {
         let all = [InstructionSet::Avx512, InstructionSet::Avx2, InstructionSet::Portable];
         all.into_iter().filter(|set| set.is_supported()).collect()
     }
 
-    /// Returns the fastest version that this CPU can run.
+    /// Returns the fastest one that this CPU supports.
     pub fn best() -> InstructionSet {
         Self::supported().first().copied().unwrap_or(InstructionSet::Portable)
     }

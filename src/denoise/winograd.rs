@@ -15,7 +15,7 @@
 //! Of a map whose pixels are doubled, the third row and column of a transformed tile are zero, as their pixels are equal
 //! in pairs: nine products are left.
 
-use super::feature_map::{BLOCK, Block, RowShape};
+use super::feature_map::{BLOCK, Block, Output, RowShape};
 use super::filter::{POSITIONS, TransformedFilter};
 use super::simd::{Task, Vector, unrolled};
 
@@ -52,7 +52,7 @@ pub struct Scratch {
     zeros: Vec<Block>,
 }
 
-/// Two rows of output.
+/// The computation of two rows of output.
 #[derive(Debug)]
 pub struct RowPair<'a> {
     /// The filter.
@@ -61,10 +61,8 @@ pub struct RowPair<'a> {
     pub inputs: &'a [Input<'a>],
     /// Negative values become zero.
     pub relu: bool,
-    /// The output rows; the second is not wanted below a map of odd height.
-    pub output: [Option<&'a mut [Block]>; 2],
-    /// Their shape.
-    pub shape: RowShape,
+    /// The output.
+    pub output: Output<'a>,
     /// Buffers.
     pub scratch: &'a mut Scratch,
 }
@@ -73,13 +71,16 @@ impl Task for RowPair<'_> {
     #[inline(always)]
     fn run<V: Vector, const B: usize, const P: usize>(mut self) {
         self.scratch.resize(self.filter, self.inputs);
-        let tiles = self.shape.width.div_ceil(2);
+        let tiles = self.output.shape.width.div_ceil(2);
         for first in (0..tiles).step_by(STRIP) {
             let count = STRIP.min(tiles - first);
+            // Transform the input of a strip of tiles
             self.transform_inputs::<V>(first, count);
+            // Sum its products with the filter over all channels, position by position
             for position in 0..POSITIONS {
                 self.multiply::<V, B, P>(position, count);
             }
+            // Transform the sums to output
             self.transform_outputs::<V>(first, count);
         }
     }
@@ -142,6 +143,7 @@ impl RowPair<'_> {
         }
     }
 
+    /// As [`RowPair::multiply`], for `B` blocks of output from `block` on.
     #[inline(always)]
     fn multiply_blocks<V: Vector, const B: usize, const P: usize>(
         &mut self,
@@ -149,27 +151,28 @@ impl RowPair<'_> {
         block: usize,
         count: usize,
     ) {
+        const { assert!(STRIP.is_multiple_of(P), "a register tile stays in its strip") };
         let (filter, Scratch { tiles, sums, .. }) = (self.filter, &mut *self.scratch);
         let weights: [&[Block]; B] = std::array::from_fn(|b| filter.weights(position, block + b));
         let tiles = &tiles[position * filter.input_blocks() * STRIP..];
         for first in (0..count).step_by(P) {
-            let mut products = [[V::ZERO; P]; B];
+            let mut accumulators = [[V::ZERO; P]; B];
             let mut start = 0;
-            for tap in filter.taps(position) {
-                let input = &tiles[tap.block * STRIP + first..][..P];
-                let weights: [&[Block]; B] = std::array::from_fn(|b| &weights[b][start..start + tap.channels]);
-                if tap.channels == BLOCK {
-                    unrolled!(CHANNEL < BLOCK, { add_channel::<V, B, P>(&mut products, input, &weights, CHANNEL) });
+            for input_block in filter.input_blocks_at(position) {
+                let input = &tiles[input_block.index * STRIP + first..][..P];
+                let weights: [&[Block]; B] = std::array::from_fn(|b| &weights[b][start..start + input_block.channels]);
+                if input_block.channels == BLOCK {
+                    unrolled!(CHANNEL < BLOCK, { add_channel::<V, B, P>(&mut accumulators, input, &weights, CHANNEL) });
                 } else {
-                    for channel in 0..tap.channels.min(BLOCK) {
-                        add_channel::<V, B, P>(&mut products, input, &weights, channel);
+                    for channel in 0..input_block.channels.min(BLOCK) {
+                        add_channel::<V, B, P>(&mut accumulators, input, &weights, channel);
                     }
                 }
-                start += tap.channels;
+                start += input_block.channels;
             }
             for b in 0..B {
                 let target = &mut sums[(position * filter.output_blocks() + block + b) * STRIP + first..][..P];
-                unrolled!(TILE < P, { products[b][TILE].store(&mut target[TILE]) });
+                unrolled!(TILE < P, { accumulators[b][TILE].store(&mut target[TILE]) });
             }
         }
     }
@@ -177,9 +180,9 @@ impl RowPair<'_> {
     /// Transforms the sums of some tiles to pixels of output.
     #[inline(always)]
     fn transform_outputs<V: Vector>(&mut self, first: usize, count: usize) {
-        let (filter, shape, relu, sums) = (self.filter, self.shape, self.relu, &self.scratch.sums);
+        let (filter, relu, sums) = (self.filter, self.relu, &self.scratch.sums);
         let stride = filter.output_blocks() * STRIP;
-        let [upper, lower] = &mut self.output;
+        let Output { rows: [upper, lower], shape } = &mut self.output;
         for block in 0..filter.output_blocks() {
             let (bias, sums) = (V::load(filter.bias(block)), &sums[block * STRIP..]);
             if let Some(row) = upper {
@@ -231,7 +234,7 @@ fn output_value<V: Vector, const ROW: usize>(sums: &[Block], stride: usize, colu
 /// Adds the products of an input channel.
 #[inline(always)]
 fn add_channel<V: Vector, const B: usize, const P: usize>(
-    products: &mut [[V; P]; B],
+    accumulators: &mut [[V; P]; B],
     input: &[Block],
     weights: &[&[Block]; B],
     channel: usize,
@@ -240,7 +243,7 @@ fn add_channel<V: Vector, const B: usize, const P: usize>(
     unrolled!(TILE < P, {
         let value = input[TILE].0[channel];
         for b in 0..B {
-            products[b][TILE] = products[b][TILE].add_product(weights[b], value);
+            accumulators[b][TILE] = accumulators[b][TILE].add_product(weights[b], value);
         }
     });
 }
