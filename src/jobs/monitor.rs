@@ -37,8 +37,6 @@ pub struct RenderMonitor {
 struct StageTimes {
     tracing: Option<Instant>,
     coarse: Option<Instant>,
-    /// Samples of the coarse picture, which are not the picture's own.
-    coarse_samples: u64,
     /// Rays of the coarse picture.
     coarse_rays: u64,
     /// Rays of the whole picture, as far as they can be predicted.
@@ -73,7 +71,7 @@ impl RenderMonitor {
     /// Returns the current progress.
     pub fn progress(&self) -> Progress {
         let stages = *locked(&self.stages);
-        let samples = self.control.samples_done().saturating_sub(stages.coarse_samples);
+        let samples = self.control.samples_done();
         let rays = self.control.rays().saturating_sub(stages.coarse_rays);
         let is_over = stages.ended.is_some() && !self.control.is_cancelled();
         let (done, total) = match (self.ends_by_noise, stages.predicted_rays) {
@@ -85,8 +83,11 @@ impl RenderMonitor {
         let end = stages.ended.unwrap_or_else(Instant::now);
         let tracing_s = stages.tracing.map_or(0.0, |since| (end - since).as_secs_f64());
         let fraction = done as f64 / total as f64;
-        // The time of the coarse picture says nothing about that of the samples
-        let counted_s = stages.coarse.or(stages.tracing).map_or(0.0, |since| (end - since).as_secs_f64());
+        // The predicted rays are those after the coarse picture
+        let counted_s = match stages.coarse.filter(|_| self.ends_by_noise) {
+            Some(since) => (end - since).as_secs_f64(),
+            None => tracing_s,
+        };
         let is_enough = counted_s > 0.3 && fraction > 0.002;
         Progress {
             fraction: fraction as f32,
@@ -117,10 +118,10 @@ impl RenderMonitor {
         locked(&self.stages).tracing = Some(now);
     }
 
-    pub(super) fn finish_coarse(&self) {
+    /// Takes the end of the coarse picture, which took so many rays beside those that the whole picture shares.
+    pub(super) fn finish_coarse(&self, rays: u64) {
         let mut stages = locked(&self.stages);
-        stages.coarse = Some(Instant::now());
-        (stages.coarse_samples, stages.coarse_rays) = (self.control.samples_done(), self.control.rays());
+        (stages.coarse, stages.coarse_rays) = (Some(Instant::now()), rays);
     }
 
     pub(super) fn finish_pass(&self) {
@@ -160,17 +161,18 @@ mod tests {
         longer.predict_rays_left(3000);
         assert_eq!(longer.progress().fraction, 0.25);
     }
+
     #[test]
-    fn the_time_left_is_that_of_the_samples_without_the_coarse_picture() {
+    fn the_samples_of_the_coarse_picture_are_the_pictures_own() {
         let settings = Settings { width: 10, height: 10, spp: 2, ..Settings::default() };
         let monitor = RenderMonitor::new(&settings, Arc::default());
         monitor.start_tracing(Instant::now() - Duration::from_secs(10));
-        monitor.control().count(50, 100);
-        let left_s = monitor.progress().left.unwrap().as_secs_f32();
-        assert!((10.0..11.0).contains(&left_s), "{left_s}");
-        monitor.finish_coarse();
-        monitor.control().count(1000, 100);
+        monitor.control().count(50, 50);
+        monitor.finish_coarse(50);
+        monitor.control().count(50, 50);
         let progress = monitor.progress();
-        assert_eq!((progress.fraction, progress.left), (0.5, None), "no time yet to judge by");
+        let left_s = progress.left.unwrap().as_secs_f32();
+        assert!(progress.fraction == 0.5 && (10.0..11.0).contains(&left_s), "{left_s}");
+        assert_eq!(monitor.rays(), 50);
     }
 }

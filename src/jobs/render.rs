@@ -5,7 +5,7 @@ use super::memory::{self, Bytes, RenderMemory};
 use super::monitor::RenderMonitor;
 use crate::io;
 use crate::raytrace::{
-    self, Film, GeometryCache, PrepareError, Purpose, RenderControl, RenderScene, Settings, Shortcut,
+    self, Film, GeometryCache, PrepareError, Purpose, RenderControl, RenderScene, Settings, Shortcut, TracedFilm,
 };
 use crate::scene::{Assets, Scene};
 use rayon::ThreadPool;
@@ -74,7 +74,7 @@ pub enum RenderError {
 pub enum RenderStage<'a> {
     /// BVHs and tables are built.
     Prepared(&'a RenderScene, RenderMemory),
-    /// One sample a pixel of a small version of a large picture.
+    /// One sample a pixel of the coarse version of a large picture.
     Coarse(&'a Film),
     /// A sample pass is complete.
     Pass(&'a Film),
@@ -85,7 +85,7 @@ pub enum RenderStage<'a> {
 pub struct Rendered {
     /// The scene as it was traced.
     pub scene: RenderScene,
-    /// The small version of a large picture; without samples if the render was cancelled in it.
+    /// The coarse version of a large picture; none if the render was cancelled in it.
     pub coarse: Option<Film>,
     /// The picture; without samples if the render was cancelled in its first pass.
     pub film: Film,
@@ -111,30 +111,32 @@ pub fn render(
     // Build the acceleration structures and the light tables.
     let layers = if input.checkpoint.is_some() { Layers::Stored } else { Layers::OneEach };
     let (mut scene, build_s) = prepared(input, layers, pool, observe)?;
-    // Trace a small version of a large picture, whose first pass takes long.
     let trace_started = Instant::now();
     monitor.start_tracing(trace_started);
     let film = match input.checkpoint {
         None => pool.install(|| raytrace::empty_film(&scene, settings)),
         Some(bytes) => stored_film(input, bytes, &mut scene, pool)?,
     };
-    let coarse = settings.coarse().filter(|_| !control.is_cancelled() && film.spp() == 0);
-    let coarse = coarse
-        .map(|coarse| pool.install(|| raytrace::render(&scene, &coarse, control, &mut |_| ControlFlow::Break(()))));
-    if let Some(film) = coarse.as_ref().filter(|film| film.spp() > 0) {
-        monitor.finish_coarse();
-        observe(RenderStage::Coarse(film));
-    }
-    // Trace sample passes until the samples, the noise limit or the time limit are reached.
+    // Trace the coarse version of a large picture, then sample passes until the samples, the noise limit or the time
+    // limit are reached.
+    let mut coarse = None;
     let film = pool.install(|| {
         within_time(input.time_limit, trace_started, control, |deadline| {
-            raytrace::resume(&scene, settings, film, control, &mut |film| {
-                monitor.finish_pass();
-                if let Some(left) = raytrace::predicted_rays_left(film, &scene, settings, monitor.rays()) {
-                    monitor.predict_rays_left(left);
+            raytrace::resume_coarse_first(&scene, settings, film, control, &mut |traced| match traced {
+                TracedFilm::Coarse(film) => {
+                    monitor.finish_coarse(film.traced_rays());
+                    observe(RenderStage::Coarse(film));
+                    coarse = Some(film.clone());
+                    ControlFlow::Continue(())
                 }
-                observe(RenderStage::Pass(film));
-                deadline.after_pass()
+                TracedFilm::Pass(film) => {
+                    monitor.finish_pass();
+                    if let Some(left) = raytrace::predicted_rays_left(film, &scene, settings, monitor.rays()) {
+                        monitor.predict_rays_left(left);
+                    }
+                    observe(RenderStage::Pass(film));
+                    deadline.after_pass()
+                }
             })
         })
     });

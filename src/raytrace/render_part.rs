@@ -3,6 +3,7 @@
 //! The samples are those of one render of the whole: a sample is a function of pixel, index and seed, and a pass has
 //! the photons and the cache that it has there, however its samples are divided.
 
+use super::coarse::PassPixels;
 use super::control::RenderControl;
 use super::film_part::FilmPart;
 use super::passes::{PassSchedule, SharedLightTracer};
@@ -39,7 +40,8 @@ pub fn render_part(
         let shared_light = &light_tracer.trace(pass, control);
         for index in first..end {
             let pass = SamplePass { first_sample: index, samples: 1 };
-            let job = TileJob { scene, shared_light, camera: &camera, settings, control, pass };
+            let job =
+                TileJob { scene, shared_light, camera: &camera, settings, control, pass, pixels: PassPixels::All };
             let mut sample = empty.clone();
             let tiles = sample.tiles_mut();
             if !tiles.par_iter_mut().with_max_len(1).all(|tile| job.run(Arc::make_mut(tile))) {

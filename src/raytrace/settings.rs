@@ -51,43 +51,9 @@ impl Default for Settings {
     }
 }
 
-/// Pixels above which a coarse picture is rendered first: the first pass of a large one takes its time.
-const LARGE: u64 = 150_000;
-/// Most pixels of the coarse picture: those of a portrait of 720x1080 at half the size, less than a second on two cores.
-const MOST_COARSE: u64 = 200_000;
-
 impl Settings {
-    /// One sample of a large picture at a half, a quarter ... of its size, to be shown until the first pass is done.
-    pub fn coarse(&self) -> Option<Settings> {
-        let small = |part: u32| Settings {
-            width: self.width.div_ceil(part),
-            height: self.height.div_ceil(part),
-            spp: 1,
-            ..self.clone()
-        };
-        let parts = (1..32).map(|halvings| small(1 << halvings));
-        (self.pixels() > LARGE).then_some(parts)?.find(|coarse| coarse.pixels() <= MOST_COARSE)
-    }
-
     /// Number of pixels.
     pub fn pixels(&self) -> u64 {
         u64::from(self.width) * u64::from(self.height)
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_coarse_picture_has_the_shape_of_a_large_one_and_few_pixels() {
-        let coarse = |width, height| {
-            let coarse = Settings { width, height, spp: 64, ..Settings::default() }.coarse();
-            coarse.map(|coarse| (coarse.width, coarse.height, coarse.spp))
-        };
-        assert_eq!(coarse(320, 240), None);
-        assert_eq!(coarse(720, 1080), Some((360, 540, 1)));
-        assert_eq!(coarse(3840, 2160), Some((480, 270, 1)));
-        assert!(coarse(u32::MAX, 1).is_some_and(|(width, height, _)| width <= 200_000 && height == 1));
     }
 }

@@ -120,6 +120,18 @@ impl Film {
         samples as f64 / (f64::from(self.width) * f64::from(self.height)).max(1.0)
     }
 
+    /// Adds a report of contributions that were discarded elsewhere.
+    pub(super) fn report_nonfinite(&mut self, report: &NonFiniteReport) {
+        if let Some(tile) = self.tiles.first_mut().filter(|_| report.count > 0) {
+            Arc::make_mut(tile).nonfinite.merge(report);
+        }
+    }
+
+    /// Rays that this run has traced for the pixels, without those for photons and caches.
+    pub fn traced_rays(&self) -> u64 {
+        self.tiles.iter().map(|tile| tile.rays).sum()
+    }
+
     /// The layers, in the order of [`Film::develop_layers`].
     pub fn layers(&self) -> &[Layer] {
         &self.layers
@@ -189,7 +201,7 @@ impl Film {
     }
 
     /// Returns the tile of a pixel and its index there.
-    fn pixel_at(&self, x: u32, y: u32) -> (&FilmTile, usize) {
+    pub(super) fn pixel_at(&self, x: u32, y: u32) -> (&FilmTile, usize) {
         let tile = &self.tiles[((y / TILE) * self.width.div_ceil(TILE) + x / TILE) as usize];
         (tile, ((y % TILE) * tile.width + x % TILE) as usize)
     }

@@ -105,6 +105,11 @@ impl SampleBlocks {
         self.sums[1][pixel] += luminance;
     }
 
+    /// Returns the exposed luminance of a pixel's only sample.
+    pub fn first_sample(&self, pixel: usize) -> f32 {
+        self.sums[1][pixel]
+    }
+
     /// Returns a copy of some pixels.
     pub fn range(&self, pixels: Range<usize>) -> Self {
         let sums = [0, 1].map(|block| self.sums[block][pixels.clone()].to_vec());

@@ -119,6 +119,15 @@ impl FilmTile {
         }
     }
 
+    /// Takes the only sample of a pixel of another tile as the first one of its own.
+    pub fn take_pixel(&mut self, pixel: usize, other: &FilmTile, from: usize) {
+        self.sums.set_range(pixel, &other.sums.range(from..from + 1));
+        self.blocks.add(pixel, other.blocks.first_sample(from));
+        if let Some((aovs, of_other)) = self.aovs.as_mut().zip(other.aovs.as_ref()) {
+            aovs.set_range(pixel, &of_other.range(from..from + 1));
+        }
+    }
+
     /// Number of pixels.
     pub fn pixels(&self) -> usize {
         self.sums.pixels()
