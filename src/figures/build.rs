@@ -155,10 +155,18 @@ fn split_skin(data: &BodyData, mesh: &mut QuadMesh) {
 
 /// Splits quads into triangles, by part, with a vertex for each pair of position and texture coordinates.
 fn to_mesh(quads: &QuadMesh, normals: &[Vec3], colors: &[Vec3]) -> Mesh {
-    let mut mesh = Mesh::default();
+    let (positions, triangles) = (quads.positions.len() * 5 / 4, quads.quads.len() * 2);
+    let mut mesh = Mesh {
+        positions: Vec::with_capacity(positions),
+        normals: Vec::with_capacity(positions),
+        colors: Vec::with_capacity(positions),
+        uvs: Vec::with_capacity(positions),
+        triangles: Vec::with_capacity(triangles),
+        ..Mesh::default()
+    };
     // The vertices of each position form a list, one for each pair of texture coordinates
     const END: u32 = u32::MAX;
-    let (mut first, mut next) = (vec![END; quads.positions.len()], Vec::with_capacity(quads.positions.len() * 5 / 4));
+    let (mut first, mut next) = (vec![END; quads.positions.len()], Vec::with_capacity(positions));
     let mut vertex_of = |mesh: &mut Mesh, position: u32, uv: Vec2| {
         let position = position as usize;
         let mut vertex = first[position];

@@ -200,14 +200,15 @@ fn border_lines(edges: &Edges, count: usize) -> Vec<(u32, [u32; 2])> {
 
 /// Returns the vertex of a mesh that is nearest to a position, by a descent along edges from a start.
 fn walk_to_nearest(mesh: &[Vec3A], neighbors: &[Vec<u32>], start: u32, position: Vec3A) -> u32 {
-    let distance = |vertex: u32| mesh[vertex as usize].distance_squared(position);
-    let mut nearest = start;
+    let with_distance = |vertex: u32| (mesh[vertex as usize].distance_squared(position), vertex);
+    let mut nearest = with_distance(start);
     loop {
-        let next = neighbors[nearest as usize].iter().copied().min_by(|a, b| distance(*a).total_cmp(&distance(*b)));
-        match next.filter(|next| distance(*next) < distance(nearest)) {
-            Some(next) => nearest = next,
-            None => return nearest,
+        let around = neighbors[nearest.1 as usize].iter().map(|&vertex| with_distance(vertex));
+        let next = around.fold(nearest, |nearest, next| if next.0 < nearest.0 { next } else { nearest });
+        if next.1 == nearest.1 {
+            return nearest.1;
         }
+        nearest = next;
     }
 }
 

@@ -1,6 +1,6 @@
 //! Points to search for those nearest to a place.
 
-use super::simd::LANES;
+use super::simd::{self, Avx2, LANES, SimdTask};
 use glam::Vec3;
 
 /// Points, eight to a block: X, Y and Z of each, infinitely far where there are fewer. For some hundreds of points.
@@ -25,13 +25,33 @@ impl PointSet {
     /// Returns the `N` points nearest to a position: squared distances and indices, the nearest first, and of those
     /// that are equally near those of lower index. With fewer points the rest are infinitely far.
     pub fn nearest<const N: usize>(&self, position: Vec3) -> [(f32, usize); N] {
+        simd::dispatch(Nearest::<N> { blocks: &self.0, position })
+    }
+}
+
+/// A search for the `N` nearest points.
+struct Nearest<'a, const N: usize> {
+    blocks: &'a [[[f32; LANES]; 3]],
+    position: Vec3,
+}
+
+impl<const N: usize> SimdTask for Nearest<'_, N> {
+    type Output = [(f32, usize); N];
+
+    #[inline(always)]
+    fn run(self, _: Option<Avx2>) -> [(f32, usize); N] {
+        let Vec3 { x: to_x, y: to_y, z: to_z } = self.position;
         let mut near = [(f32::INFINITY, 0); N];
-        for (block, [x, y, z]) in self.0.iter().enumerate() {
-            let distance = |i: usize| Vec3::new(x[i], y[i], z[i]).distance_squared(position);
-            let distances: [f32; LANES] = std::array::from_fn(distance);
+        for (block, [x, y, z]) in self.blocks.iter().enumerate() {
+            let mut distances = [0.0; LANES];
+            let mut is_near = false;
+            for i in 0..LANES {
+                let [x, y, z] = [to_x - x[i], to_y - y[i], to_z - z[i]];
+                distances[i] = x * x + y * y + z * z;
+                is_near |= distances[i] < near[N - 1].0;
+            }
             // Skip blocks without a point nearer than those found
-            let least = distances.iter().fold(f32::INFINITY, |least, d| if *d < least { *d } else { least });
-            if least >= near[N - 1].0 {
+            if !is_near {
                 continue;
             }
             for (lane, &distance) in distances.iter().enumerate() {

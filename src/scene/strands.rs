@@ -80,6 +80,12 @@ impl Strands {
         })
     }
 
+    /// Makes room for so many more strands and points.
+    pub fn reserve(&mut self, strands: usize, points: usize) {
+        self.starts.reserve(strands);
+        self.points.reserve(points);
+    }
+
     /// Appends a strand, from root to tip. Strands of less than two points, and those with a point that is not finite
     /// or a radius that is not positive, are left out.
     pub fn push(&mut self, points: impl IntoIterator<Item = StrandPoint>) {

@@ -87,6 +87,7 @@ pub fn grow_head(body: &HairBody, figure: &Figure, style: &Style, strands: &mut 
         points.into_iter().map(|(p, radius_m)| (body.head.transform_point3(p), radius_m)).collect::<Vec<_>>()
     };
     let grown: Vec<Vec<(Vec3, f32)>> = roots.par_iter().enumerate().map(strand).collect();
+    strands.reserve(grown.len(), grown.iter().map(Vec::len).sum());
     for points in grown {
         strands.push(points.into_iter().map(|(position, radius_m)| StrandPoint { position, radius_m }));
     }
@@ -420,11 +421,13 @@ fn move_smoothly(points: &mut [(Vec3, f32)], move_out: &dyn Fn(&mut [Vec3])) -> 
     let squared = |k: usize| wanted.get(k).map_or(0.0, |offset| offset.length_squared());
     let is_peak = |k: usize| squared(k) > FAR_MOVE_M * FAR_MOVE_M && squared(k) >= squared(k - 1).max(squared(k + 1));
     let peaks: Vec<usize> = (1..wanted.len()).filter(|&k| is_peak(k)).collect();
+    if peaks.is_empty() {
+        points.iter_mut().zip(&wanted).skip(1).for_each(|((p, _), offset)| *p += *offset);
+        return false;
+    }
     let mut from_root = vec![0.0];
-    if !peaks.is_empty() {
-        for ends in points.windows(2) {
-            from_root.push(from_root[from_root.len() - 1] + ends[0].0.distance(ends[1].0));
-        }
+    for ends in points.windows(2) {
+        from_root.push(from_root[from_root.len() - 1] + ends[0].0.distance(ends[1].0));
     }
     for (k, (p, _)) in points.iter_mut().enumerate().skip(1) {
         let along = |&peak: &usize| {
@@ -435,7 +438,7 @@ fn move_smoothly(points: &mut [(Vec3, f32)], move_out: &dyn Fn(&mut [Vec3])) -> 
         let offsets = peaks.iter().map(along);
         *p += offsets.fold(wanted[k], |a, b| if b.length_squared() > a.length_squared() { b } else { a });
     }
-    !peaks.is_empty()
+    true
 }
 
 /// Ends a strand at the point where it falls below a level, metres under the eyes along `down`.

@@ -83,6 +83,10 @@ impl TorsoSurface {
     /// the back, metres.
     pub fn pushed_out(&self, p: Vec3, distance: f32, side: ShoulderSide) -> Vec3 {
         let local = self.local(p);
+        // Most hair is higher
+        if local.y > TOP_M {
+            return p;
+        }
         let (field, along) = match side {
             ShoulderSide::Front => (&self.chest, 1.0),
             ShoulderSide::Back => (&self.back, -1.0),
