@@ -86,13 +86,13 @@ impl TransformedFilter {
         &self.bias[block]
     }
 
-    /// The blocks of input that have products at a position.
+    /// Returns the blocks of input that have products at a position.
     #[inline]
     pub fn input_blocks_at(&self, position: usize) -> &[InputBlock] {
         &self.positions[position].inputs
     }
 
-    /// The weights of an output block at a position, for all channels of those blocks of input.
+    /// Returns the weights of an output block at a position, for all channels of those blocks of input.
     #[inline]
     pub fn weights(&self, position: usize, block: usize) -> &[Block] {
         let Position { weights, stride, .. } = &self.positions[position];

@@ -24,13 +24,13 @@ pub enum InstructionSet {
 }
 
 impl InstructionSet {
-    /// Returns those that this CPU supports, the fastest first.
+    /// Returns the sets that this CPU supports, the fastest first.
     pub fn supported() -> Vec<InstructionSet> {
         let all = [InstructionSet::Avx512, InstructionSet::Avx2, InstructionSet::Portable];
         all.into_iter().filter(|set| set.is_supported()).collect()
     }
 
-    /// Returns the fastest one that this CPU supports.
+    /// Returns the fastest set that this CPU supports.
     pub fn best() -> InstructionSet {
         Self::supported().first().copied().unwrap_or(InstructionSet::Portable)
     }

@@ -155,18 +155,18 @@ fn split_skin(data: &BodyData, mesh: &mut QuadMesh) {
 
 /// Splits quads into triangles, by part, with a vertex for each pair of position and texture coordinates.
 fn to_mesh(quads: &QuadMesh, normals: &[Vec3], colors: &[Vec3]) -> Mesh {
-    let (positions, triangles) = (quads.positions.len() * 5 / 4, quads.quads.len() * 2);
+    let (vertex_count, triangle_count) = (quads.positions.len() * 5 / 4, quads.quads.len() * 2);
     let mut mesh = Mesh {
-        positions: Vec::with_capacity(positions),
-        normals: Vec::with_capacity(positions),
-        colors: Vec::with_capacity(positions),
-        uvs: Vec::with_capacity(positions),
-        triangles: Vec::with_capacity(triangles),
+        positions: Vec::with_capacity(vertex_count),
+        normals: Vec::with_capacity(vertex_count),
+        colors: Vec::with_capacity(vertex_count),
+        uvs: Vec::with_capacity(vertex_count),
+        triangles: Vec::with_capacity(triangle_count),
         ..Mesh::default()
     };
     // The vertices of each position form a list, one for each pair of texture coordinates
     const END: u32 = u32::MAX;
-    let (mut first, mut next) = (vec![END; quads.positions.len()], Vec::with_capacity(positions));
+    let (mut first, mut next) = (vec![END; quads.positions.len()], Vec::with_capacity(vertex_count));
     let mut vertex_of = |mesh: &mut Mesh, position: u32, uv: Vec2| {
         let position = position as usize;
         let mut vertex = first[position];

@@ -37,7 +37,7 @@ pub struct RenderMonitor {
 struct StageTimes {
     tracing: Option<Instant>,
     coarse: Option<Instant>,
-    /// Rays of the coarse picture.
+    /// Rays of the coarse version.
     coarse_rays: u64,
     /// Rays of the whole picture, as far as they can be predicted.
     predicted_rays: Option<u64>,
@@ -83,7 +83,7 @@ impl RenderMonitor {
         let end = stages.ended.unwrap_or_else(Instant::now);
         let tracing_s = stages.tracing.map_or(0.0, |since| (end - since).as_secs_f64());
         let fraction = done as f64 / total as f64;
-        // The predicted rays are those after the coarse picture
+        // The predicted rays are those after the coarse version
         let counted_s = match stages.coarse.filter(|_| self.ends_by_noise) {
             Some(since) => (end - since).as_secs_f64(),
             None => tracing_s,
@@ -109,7 +109,7 @@ impl RenderMonitor {
         locked(&self.stages).first_pass
     }
 
-    /// Returns the rays so far, without those of the coarse picture.
+    /// Returns the rays so far, without those of the coarse version.
     pub(super) fn rays(&self) -> u64 {
         self.control.rays().saturating_sub(locked(&self.stages).coarse_rays)
     }
@@ -118,7 +118,7 @@ impl RenderMonitor {
         locked(&self.stages).tracing = Some(now);
     }
 
-    /// Takes the end of the coarse picture, which took so many rays beside those that the whole picture shares.
+    /// Takes the end of the coarse version, which took so many rays beside those that the whole picture shares.
     pub(super) fn finish_coarse(&self, rays: u64) {
         let mut stages = locked(&self.stages);
         (stages.coarse, stages.coarse_rays) = (Some(Instant::now()), rays);
@@ -163,7 +163,7 @@ mod tests {
     }
 
     #[test]
-    fn the_samples_of_the_coarse_picture_are_the_pictures_own() {
+    fn the_samples_of_the_coarse_version_are_the_pictures_own() {
         let settings = Settings { width: 10, height: 10, spp: 2, ..Settings::default() };
         let monitor = RenderMonitor::new(&settings, Arc::default());
         monitor.start_tracing(Instant::now() - Duration::from_secs(10));

@@ -47,18 +47,18 @@ impl CoarseGrid {
     }
 }
 
-/// The coarse version of a picture and where its pixels are in it.
+/// The traced coarse version of a picture.
 #[derive(Clone, Copy, Debug)]
 pub struct CoarseFilm<'a> {
-    /// The grid.
+    /// Where its pixels are in the picture.
     pub grid: CoarseGrid,
     /// The samples.
     pub film: &'a Film,
 }
 
 impl CoarseFilm<'_> {
-    /// Takes the first sample of a pixel of an empty tile from the coarse version. Returns false where it has none.
-    pub fn give(&self, tile: &mut FilmTile, pixel: usize) -> bool {
+    /// Copies the first sample of a pixel to an empty tile. Returns false where the coarse version has none.
+    pub fn copy_to(&self, tile: &mut FilmTile, pixel: usize) -> bool {
         let Some((x, y)) = self.grid.coarse_pixel(tile.position(pixel)) else { return false };
         let (source, index) = self.film.pixel_at(x, y);
         tile.take_pixel(pixel, source, index);

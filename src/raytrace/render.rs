@@ -67,6 +67,7 @@ pub fn resume_coarse_first(
     trace_passes(scene, settings, film, CoarseGrid::of(settings), control, observe)
 }
 
+/// Traces the passes that a film lacks; before the first one the coarse version, if there is a grid for it.
 fn trace_passes(
     scene: &RenderScene,
     settings: &Settings,
@@ -159,7 +160,7 @@ impl TileJob<'_> {
         let mut pixel_samplers: Vec<_> = self.scene.moments().iter().map(in_moment).collect();
         for pixel in 0..band.pixels() {
             let (x, y) = match self.pixels {
-                PassPixels::Rest(coarse) if coarse.give(band, pixel) => continue,
+                PassPixels::Rest(coarse) if coarse.copy_to(band, pixel) => continue,
                 PassPixels::All | PassPixels::Rest(_) => band.position(pixel),
                 PassPixels::Coarse(grid) => grid.pixel(band.position(pixel)),
             };

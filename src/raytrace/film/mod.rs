@@ -127,7 +127,7 @@ impl Film {
         }
     }
 
-    /// Rays that this run has traced for the pixels, without those for photons and caches.
+    /// Returns the rays that this run has traced for the pixels, without those for photons and caches.
     pub fn traced_rays(&self) -> u64 {
         self.tiles.iter().map(|tile| tile.rays).sum()
     }
