@@ -135,6 +135,40 @@ mod tests {
     }
 
     #[test]
+    fn hair_stays_the_same_when_a_figure_smiles_or_turns_its_head() {
+        // Roots were placed by the area of the figure's skin: the least change put each of them elsewhere, in the median
+        // by 94 mm.
+        let ends_of = |figure: &Figure| {
+            let to_head = head_frame(figure).inverse();
+            let strands = build(figure).fine.strands.with_parts(|part| part == "hair");
+            let ends = |index: usize| {
+                let points = strands.strand(index);
+                [points[0], points[points.len() - 1]].map(|p| to_head.transform_point3(p.position))
+            };
+            (0..strands.len()).map(ends).collect::<Vec<_>>()
+        };
+        for ready in [&READY[0], &READY[1], &READY[2]] {
+            let figure = Figure { pose: Pose::default(), ..ready.figure() };
+            let mut smiling = figure;
+            smiling.expression.smile = 0.5;
+            let mut turned = figure;
+            turned.pose.torso.head_yaw_deg = 30.0;
+            let before = ends_of(&figure);
+            // Share of the strands whose root or end is moved by more than a length
+            let moved = |after: &Figure, end: usize, by_m: f32| {
+                let pairs = before.iter().zip(ends_of(after));
+                let moved = pairs.filter(|(a, b)| a[end].distance(b[end]) > by_m).count();
+                moved as f32 / before.len() as f32
+            };
+            let [root, end] = [0, 1].map(|end| moved(&smiling, end, 0.001));
+            assert!(root < 0.001 && end < 0.01, "{}, smiling: {root} of the roots, {end} of the ends", ready.name);
+            // The skin of the nape follows the neck
+            let root = moved(&turned, 0, 0.02);
+            assert!(root < 0.01, "{}, turned: {root} of the roots", ready.name);
+        }
+    }
+
+    #[test]
     fn long_hair_falls_over_the_clothes() {
         const DEPTH_M: f32 = 0.002;
         let meshes = build(&READY[0].figure());

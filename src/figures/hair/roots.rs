@@ -21,7 +21,9 @@ pub struct Root {
     pub place: Vec3,
 }
 
-/// Places roots at random on the skin, evenly by area where `density` is 1, fewer where it is less.
+/// Places roots at random on the skin, evenly by the base mesh's area where `density` is 1, fewer where it is less.
+///
+/// They stay where they are on the skin whatever the figure's face, expression and pose are: the same hair is on its head.
 pub fn scatter(body: &HairBody, count: usize, seed: u32, density: &(dyn Fn(Vec3) -> f32 + Sync)) -> Vec<Root> {
     // The skin of the region, as smooth as it is rendered
     let eyes = body.data.eyes_middle();
@@ -35,10 +37,9 @@ pub fn scatter(body: &HairBody, count: usize, seed: u32, density: &(dyn Fn(Vec3)
     let base = middle.subdivided_positions(&coarse.subdivided_positions(&base));
     let skin = middle.subdivided().mesh;
     let normals = skin.normals();
-    // Areas of the quads, summed
-    let corners = |index: usize| skin.quads[index].map(|v| skin.positions[v as usize]);
+    // Areas of the base mesh's quads, summed
     let area = |index: usize| {
-        let [a, b, c, d] = corners(index);
+        let [a, b, c, d] = skin.quads[index].map(|v| base[v as usize]);
         (c - a).cross(d - b).length() / 2.0
     };
     let mut sums = Vec::with_capacity(skin.quads.len());
