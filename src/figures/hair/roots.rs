@@ -23,7 +23,7 @@ pub struct Root {
 
 /// Places roots at random on the skin, evenly by the base mesh's area where `density` is 1, fewer where it is less.
 ///
-/// They stay where they are on the skin whatever the figure's face, expression and pose are: the same hair is on its head.
+/// Body, face, expression and pose of the figure do not change where on the skin they are.
 pub fn scatter(body: &HairBody, count: usize, seed: u32, density: &(dyn Fn(Vec3) -> f32 + Sync)) -> Vec<Root> {
     // The skin of the region, as smooth as it is rendered
     let eyes = body.data.eyes_middle();
