@@ -74,8 +74,8 @@ pub fn illuminance_by_paths(scene: &Scene, settings: &Settings) -> SampleMean {
     values(&film.develop(scene)).scaled(lux_per_value(&scene.camera))
 }
 
-/// Returns the illuminance from renders with several seeds, lux. Pixels share photons, so that only the variance
-/// between renders gives the standard error.
+/// Returns the illuminance from renders with several seeds, lux. Pixels share photons and the cache of bounced
+/// light, so that only the variance between renders gives the standard error.
 pub fn illuminance_over(seeds: u32, scene: &Scene, settings: &Settings) -> SampleMean {
     let reading = |seed| illuminance(scene, &Settings { seed, ..settings.clone() }).mean;
     SampleMean::of((0..seeds).map(reading))

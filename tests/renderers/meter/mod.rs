@@ -301,11 +301,9 @@ fn the_direct_picture_plus_the_metered_bounced_light_is_the_path_traced_picture(
         let light = light(emitter, Output::Lumens(4000.0), point);
         scene.lights.push(Light { id: LightId(i as u32), name: format!("Light {i}"), ..light });
     }
-    let picture = |method, seed| {
-        let settings = Settings { seed, ..studio::measure::square(method, 32, 64) };
-        studio::measure::illuminance(&scene, &settings)
-    };
-    let (direct, path) = (picture(Method::Direct, 1), picture(Method::Path, 2));
+    let direct =
+        studio::measure::illuminance(&scene, &Settings { seed: 99, ..studio::measure::square(Method::Direct, 32, 64) });
+    let path = studio::measure::illuminance_over(16, &scene, &studio::measure::square(Method::Path, 16, 16));
     let effort = MeterEffort { paths: Some(1 << 16), ..MeterEffort::default() };
     let read = read_with(&scene, position, normal, Receptor::Flat, &effort).reading;
     let bounced: f64 = read.lights.iter().map(|light| f64::from(light.bounced)).sum();
