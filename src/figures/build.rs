@@ -5,13 +5,14 @@ use super::eyes::add_eye;
 use super::garments::dress;
 use super::gaze::without_gaze;
 use super::hair::{self, HairBody};
+use super::last_results::LastResults;
 use super::patch::Patch;
 use super::posed_body::PosedBody;
 use super::regions::{Clothes, Edges, Garment};
 use super::skin_colors::{NO_SKIN, skin_colors};
 use super::subdivide::{QuadMesh, SubdivisionSurface};
 use super::tear_line::{Lashes, add_tear_line};
-use crate::scene::{Expression, Figure, FigureMeshes, Mesh, MeshPart};
+use crate::scene::{Expression, Figure, FigureMeshes, Mesh, MeshPart, Strands};
 use glam::{Affine3A, Vec2, Vec3};
 use std::sync::Arc;
 
@@ -24,15 +25,17 @@ const EYES: u8 = 1;
 const INSIDE_MOUTH: [(&str, u8); 3] = [("helper-upper-teeth", 3), ("helper-lower-teeth", 3), ("helper-tongue", 4)];
 /// Regions of the skin that are parts, with their masks.
 const REGIONS: [(u8, &str); 3] = [(8, "lips"), (9, "fingernails"), (10, "inside-mouth")];
+/// Figures whose clothes and hair are kept: for each some 15 MB. A slider changes the face of one.
+const KEPT_FIGURES: usize = 2;
 /// Skin reaches this far below the edge of a garment, metres.
 const OVERLAP_M: f32 = 0.03;
 
 /// Builds the meshes of a figure in object space, metres.
-pub fn build(data: &BodyData, figure: &Figure) -> FigureMeshes {
+pub fn build(figure: &Figure) -> FigureMeshes {
+    let data = BodyData::shipped();
     let body = PosedBody::new(data, figure);
+    let still = &without_expression(figure);
     let eyeballs = body.eyeballs(data, figure);
-    let eyes = eyeballs.map(|ball| ball.translation.into());
-    let hair_body = HairBody { data, positions: &body.positions, head: body.head(data), eyes };
     let (eyes_mesh, eye_colors) = both_eyes(eyeballs);
     let finish = |mut quads: QuadMesh, normals: &[Vec3], colors: &[Vec3], tears: &(QuadMesh, Vec<Vec3>)| {
         // The vertices of the coarse mesh are the first ones of the fine mesh: both lie on the limit surface
@@ -44,10 +47,8 @@ pub fn build(data: &BodyData, figure: &Figure) -> FigureMeshes {
         to_mesh(&quads, &normals, &[&colors[..count], &eye_colors, &tears.1].concat())
     };
     let skin = || {
-        let (mut coarse, clothes) = rayon::join(
-            || SubdivisionSurface::new(cage(data, figure, &body)).subdivided(),
-            || dress(data, figure, &body, garment_part),
-        );
+        let (mut coarse, clothes) =
+            rayon::join(|| SubdivisionSurface::new(cage(data, figure, &body)).subdivided(), || clothes(still));
         coarse.append(&clothes);
         let mut fine = coarse.subdivided();
         fine.move_to_limit();
@@ -60,15 +61,49 @@ pub fn build(data: &BodyData, figure: &Figure) -> FigureMeshes {
         );
         rayon::join(|| finish(coarse, &normals, &colors, &tears), || finish(fine, &normals, &colors, &tears))
     };
-    let ((mut coarse, mut fine), strands) = rayon::join(skin, || hair::grow(&hair_body, figure));
+    let hair = || {
+        let mut strands = Strands::clone(&head_hair(still));
+        hair::grow_on_face(&hair_body(data, figure, &body), figure, &mut strands);
+        strands
+    };
+    let ((mut coarse, mut fine), strands) = rayon::join(skin, hair);
     coarse.strands = hair::thinned(&strands);
     fine.strands = strands;
     FigureMeshes { fine: Arc::new(fine), coarse: Arc::new(coarse) }
 }
 
+/// Returns the figure without expression and gaze: all that matters to clothes and to the hair of the head.
+fn without_expression(figure: &Figure) -> Figure {
+    Figure { expression: Expression::default(), ..without_gaze(figure) }
+}
+
+/// Returns the garments of a figure without expression; those of the last ones are kept.
+fn clothes(still: &Figure) -> Arc<SubdivisionSurface> {
+    static LAST: LastResults<Arc<SubdivisionSurface>> = LastResults::new(KEPT_FIGURES);
+    let data = BodyData::shipped();
+    LAST.get_or(still, || Arc::new(dress(data, still, &PosedBody::new(data, still), garment_part)))
+}
+
+/// Returns the hair of the head of a figure without expression; those of the last ones are kept.
+fn head_hair(still: &Figure) -> Arc<Strands> {
+    static LAST: LastResults<Arc<Strands>> = LastResults::new(KEPT_FIGURES);
+    let data = BodyData::shipped();
+    LAST.get_or(still, || {
+        let body = PosedBody::new(data, still);
+        Arc::new(hair::grow_on_head(&hair_body(data, still, &body), still))
+    })
+}
+
+/// Returns the body of a figure that hair grows on.
+fn hair_body<'a>(data: &'a BodyData, figure: &Figure, body: &'a PosedBody) -> HairBody<'a> {
+    let eyes = body.eyeballs(data, figure).map(|ball| ball.translation.into());
+    HairBody { data, positions: &body.positions, head: body.head(data), eyes }
+}
+
 /// Returns the meshes of a figure from those of one that differs from it in the gaze alone: the same bits as
 /// [`build`] gives, sooner.
-pub fn with_other_gaze(data: &BodyData, built: &FigureMeshes, figure: &Figure) -> FigureMeshes {
+pub fn with_other_gaze(built: &FigureMeshes, figure: &Figure) -> FigureMeshes {
+    let data = BodyData::shipped();
     let (eyes, colors) = both_eyes(PosedBody::new(data, figure).eyeballs(data, figure));
     let eyes = to_mesh(&eyes, &eyes.normals(), &colors);
     let turned = |mesh: &Mesh| {
@@ -196,4 +231,57 @@ fn to_mesh(quads: &QuadMesh, normals: &[Vec3], colors: &[Vec3]) -> Mesh {
         }
     }
     mesh
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::figures::READY;
+
+    #[test]
+    fn an_expression_moves_the_face_and_neither_clothes_nor_hair_of_the_head() {
+        let part = |mesh: &Mesh, name: &str| -> Vec<Vec3> {
+            let Some(part) = mesh.parts.iter().find(|part| part.name == name) else { return Vec::new() };
+            let triangles = &mesh.triangles[part.triangles.start as usize..part.triangles.end as usize];
+            triangles.iter().flatten().map(|vertex| mesh.positions[*vertex as usize]).collect()
+        };
+        let hair = |meshes: &FigureMeshes, kept: &str| meshes.fine.strands.with_parts(|part| part == kept);
+        for ready in [&READY[0], &READY[1]] {
+            let figure = ready.figure();
+            let mut laughing = figure;
+            (laughing.expression.smile, laughing.expression.mouth_open) = (0.8, 0.4);
+            let (before, after) = (build(&figure), build(&laughing));
+            assert_eq!(hair(&before, "hair"), hair(&after, "hair"), "{}", ready.name);
+            for clothing in ["top", "bottom", "shoes"] {
+                let [before, after] = [&before, &after].map(|meshes| part(&meshes.fine, clothing));
+                assert!(!before.is_empty() && before == after, "{}, {clothing}", ready.name);
+            }
+            assert_ne!(hair(&before, "brows"), hair(&after, "brows"), "{}", ready.name);
+            assert_ne!(part(&before.fine, "lips"), part(&after.fine, "lips"), "{}", ready.name);
+            // The same from kept hair and clothes, and after other figures have taken their room
+            for other in &READY[2..4] {
+                build(&other.figure());
+            }
+            assert_eq!(build(&laughing).fine, after.fine, "{}", ready.name);
+        }
+    }
+
+    #[test]
+    fn hair_has_its_roots_on_the_skin_of_a_laughing_face() {
+        const DEPTH_M: f32 = 0.002;
+        let mut figure = READY[0].figure();
+        (figure.expression.smile, figure.expression.brows_up, figure.expression.mouth_open) = (1.0, 1.0, 1.0);
+        let mesh = build(&figure).fine;
+        let skin = &mesh.parts[0];
+        assert_eq!(skin.name, "skin");
+        let triangles = &mesh.triangles[skin.triangles.start as usize..skin.triangles.end as usize];
+        let vertices: std::collections::BTreeSet<u32> = triangles.iter().flatten().copied().collect();
+        for index in (0..mesh.strands.parts()[0].strands.end as usize).step_by(400) {
+            let root = mesh.strands.strand(index)[0].position;
+            let squared = |v: u32| mesh.positions[v as usize].distance_squared(root);
+            let nearest = vertices.iter().copied().min_by(|a, b| squared(*a).total_cmp(&squared(*b))).unwrap() as usize;
+            let height = (root - mesh.positions[nearest]).dot(mesh.normals[nearest]);
+            assert!(height.abs() < DEPTH_M, "root {index} is {height} m over the skin");
+        }
+    }
 }

@@ -6,6 +6,8 @@
 //!   -> Mesh with parts; eyes and their tear lines
 //! ```
 //!
+//! Hair of the head and clothes are those of the face without expression, and are kept while it changes.
+//!
 //! The body data are MakeHuman's (CC0), converted by `catchlight bake-figures`. A mesh is a function of the parameters:
 //! the same bits for any number of threads.
 
@@ -21,6 +23,7 @@ mod gaze;
 mod hair;
 mod iris;
 mod joints;
+mod last_results;
 mod makehuman;
 mod materials;
 mod morph;
@@ -56,18 +59,18 @@ pub use skin_textures::{builtin_texture, skin_textures};
 use crate::scene::{Figure, FigureMeshes};
 pub use build::PARTS;
 use glam::{Affine3A, Vec3};
+use last_results::LastResults;
 use posed_body::PosedBody;
-use std::sync::{Mutex, PoisonError};
 
 /// Builds the meshes of a figure in object space, metres.
 pub fn build(figure: &Figure) -> FigureMeshes {
-    build::build(BodyData::shipped(), figure)
+    build::build(figure)
 }
 
 /// Returns the meshes of a figure from those of another one, if the two differ in the gaze alone; see [`build()`].
 pub fn build_from(built: &Figure, meshes: &FigureMeshes, figure: &Figure) -> Option<FigureMeshes> {
     let same = gaze::without_gaze(built) == gaze::without_gaze(figure);
-    same.then(|| build::with_other_gaze(BodyData::shipped(), meshes, figure))
+    same.then(|| build::with_other_gaze(meshes, figure))
 }
 
 /// Returns the middle of the face in object space, metres: between the eyes and the tip of the nose.
@@ -98,18 +101,8 @@ const FACE_FROM_EYES: Vec3 = Vec3::new(0.0, -0.018, 0.02);
 /// +Y up, +Z the direction of the face. The last ones are kept: the window asks each frame, and a body takes some
 /// milliseconds to pose.
 pub fn head_frame(figure: &Figure) -> Affine3A {
+    static LAST: LastResults<Affine3A> = LastResults::new(16);
     let figure = &gaze::without_gaze(figure);
-    static LAST: Mutex<Vec<(Figure, Affine3A)>> = Mutex::new(Vec::new());
-    // A panic with the lock held leaves the list intact: it changes by whole entries.
-    let last = || LAST.lock().unwrap_or_else(PoisonError::into_inner);
-    if let Some((_, head)) = last().iter().find(|(known, _)| known == figure) {
-        return *head;
-    }
     let data = BodyData::shipped();
-    let head = PosedBody::new(data, figure).head(data);
-    let mut last = last();
-    let excess = (last.len() + 1).saturating_sub(16);
-    last.drain(..excess);
-    last.push((*figure, head));
-    head
+    LAST.get_or(figure, || PosedBody::new(data, figure).head(data))
 }

@@ -47,22 +47,26 @@ pub fn thinned(strands: &Strands) -> Strands {
     coarse
 }
 
-/// Returns the hair of a figure: parts `hair`, `beard`, `brows` and `lashes`.
-pub fn grow(body: &HairBody, figure: &Figure) -> Strands {
+/// Returns the hair of a figure's head: part `hair`.
+pub fn grow_on_head(body: &HairBody, figure: &Figure) -> Strands {
     let mut strands = Strands::default();
     if let Some(style) = style::of_head(figure.hair) {
         growth::grow_head(body, figure, &style, &mut strands);
     }
     strands.end_part("hair");
+    strands
+}
+
+/// Appends the hair of a figure's face: parts `beard`, `brows` and `lashes`.
+pub fn grow_on_face(body: &HairBody, figure: &Figure, strands: &mut Strands) {
     if let Some(style) = style::of_beard(figure.beard) {
-        face_hair::grow_beard(body, figure, &style, &mut strands);
+        face_hair::grow_beard(body, figure, &style, strands);
     }
     strands.end_part("beard");
-    face_hair::grow_brows(body, figure, &mut strands);
+    face_hair::grow_brows(body, figure, strands);
     strands.end_part("brows");
-    face_hair::grow_lashes(body, figure, &mut strands);
+    face_hair::grow_lashes(body, figure, strands);
     strands.end_part("lashes");
-    strands
 }
 
 #[cfg(test)]
@@ -135,38 +139,23 @@ mod tests {
     }
 
     #[test]
-    fn hair_stays_the_same_when_a_figure_smiles_or_turns_its_head() {
+    fn hair_stays_the_same_when_a_figure_turns_its_head() {
         // Roots were placed by the area of the figure's skin: the least change put each of them elsewhere, in the median
         // by 94 mm.
-        let ends_of = |figure: &Figure| {
+        let roots_of = |figure: &Figure| {
             let to_head = head_frame(figure).inverse();
             let strands = build(figure).fine.strands.with_parts(|part| part == "hair");
-            let ends = |index: usize| {
-                let points = strands.strand(index);
-                [points[0], points[points.len() - 1]].map(|p| to_head.transform_point3(p.position))
-            };
-            (0..strands.len()).map(ends).collect::<Vec<_>>()
+            let root = |index: usize| to_head.transform_point3(strands.strand(index)[0].position);
+            (0..strands.len()).map(root).collect::<Vec<_>>()
         };
         for ready in [&READY[0], &READY[1], &READY[2]] {
             let figure = Figure { pose: Pose::default(), ..ready.figure() };
-            let mut smiling = figure;
-            smiling.expression.smile = 0.5;
             let mut turned = figure;
             turned.pose.torso.head_yaw_deg = 30.0;
-            let before = ends_of(&figure);
-            // Shares of the roots and of the free ends that are moved by more than a distance
-            let shares_moved = |figure: &Figure, by_m: f32| {
-                let after = ends_of(figure);
-                [0, 1].map(|end| {
-                    let pairs = before.iter().zip(&after);
-                    pairs.filter(|(a, b)| a[end].distance(b[end]) > by_m).count() as f32 / before.len() as f32
-                })
-            };
-            let [roots, ends] = shares_moved(&smiling, 0.001);
-            assert!(roots < 0.001 && ends < 0.01, "{}, smiling: {roots} of the roots, {ends} of the ends", ready.name);
+            let (before, after) = (roots_of(&figure), roots_of(&turned));
             // The skin of the nape follows the neck
-            let [roots, _] = shares_moved(&turned, 0.02);
-            assert!(roots < 0.01, "{}, turned: {roots} of the roots", ready.name);
+            let moved = before.iter().zip(&after).filter(|(a, b)| a.distance(**b) > 0.02).count();
+            assert!(moved * 100 < before.len(), "{}: {moved} of {} roots", ready.name, before.len());
         }
     }
 
