@@ -72,7 +72,7 @@ fn scopes_over_both_live_views_read_their_scene_linear_pictures() {
     let depth = undo_depth(&window);
     for mode in [LiveMode::Quick, LiveMode::True] {
         run(&mut window, Command::SetLiveMode(mode));
-        wait_until(&mut window, |app| mode == LiveMode::Quick || app.viewport().traced_view.has_picture());
+        wait_until(&mut window, |app| mode == LiveMode::Quick || app.viewport().traced_view.is_settled());
         let histogram = |window: &Window| window.query_all_by_label_contains("Histogram: ").next().is_some();
         assert!(!histogram(&window), "{mode:?}: no scope is on at first");
         click(&mut window, "Scopes");
