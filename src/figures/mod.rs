@@ -57,15 +57,10 @@ pub use skeleton::Side;
 pub use skin_textures::{builtin_texture, skin_textures};
 
 use crate::scene::{Figure, FigureMeshes};
-pub use build::PARTS;
+pub use build::{PARTS, build};
 use glam::{Affine3A, Vec3};
 use last_results::LastResults;
 use posed_body::PosedBody;
-
-/// Builds the meshes of a figure in object space, metres.
-pub fn build(figure: &Figure) -> FigureMeshes {
-    build::build(figure)
-}
 
 /// Returns the meshes of a figure from those of another one, if the two differ in the gaze alone; see [`build()`].
 pub fn build_from(built: &Figure, meshes: &FigureMeshes, figure: &Figure) -> Option<FigureMeshes> {

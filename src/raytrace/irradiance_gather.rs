@@ -23,10 +23,10 @@ use glam::Vec3;
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 
-/// Pilot paths that find points on surfaces, for each sample of a pixel, at most: one for each pixel. In a picture of a
-/// thousand pixels, more of them would take four times as long as the picture;
+/// Maximum number of pilot paths that find points on surfaces, for each sample of a pixel. A smaller picture has one for
+/// each of its pixels: with so many, one of a thousand pixels took four times as long.
 const MAX_PILOT_PATHS: u32 = 1 << 14;
-/// for so many samples of a pass at most.
+/// Samples of a pass for which there are pilot paths, at most.
 const MOST_PILOTS: u32 = 2;
 /// Pilot paths by which it is decided whether the cache pays, at least.
 const MIN_DECIDING_PATHS: u32 = 1 << 10;
@@ -81,7 +81,7 @@ pub fn pays(scene: &RenderScene, camera: &FilmCamera) -> bool {
     second > MIN_BOUNCED * paths as f32 && third >= least * second
 }
 
-/// Returns the number of pilot paths for each sample of a pixel.
+/// Returns the number of pilot paths of a camera's picture for each sample of a pixel.
 fn pilot_paths(camera: &FilmCamera) -> u32 {
     let (width, height) = camera.size();
     width.saturating_mul(height).min(MAX_PILOT_PATHS)
@@ -215,9 +215,9 @@ impl IrradianceCache {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::photo::Picture;
     use crate::raytrace::emitters::MisVertex;
     use crate::raytrace::path_tracer::PathState;
+    use crate::raytrace::test_pictures::{blocks, mean};
     use crate::raytrace::{Film, Settings, Shortcut, prepare, render};
     use crate::scene::{
         Aim, Assets, Camera, Emitter, Light, LightId, Material, Object, ObjectId, Output, Room, Scene, Shape, Transform,
@@ -271,45 +271,25 @@ mod tests {
         [cached, paths]
     }
 
-    fn luminances(picture: &Picture) -> Vec<f64> {
-        picture.rgb.iter().map(|rgb| f64::from(luminance(Vec3::from(*rgb)))).collect()
-    }
-
-    fn mean(values: &[f64]) -> f64 {
-        values.iter().sum::<f64>() / values.len() as f64
-    }
-
-    /// Returns the means of the blocks of a picture.
-    fn blocks(values: &[f64]) -> Vec<f64> {
-        let (across, down) = (SIZE.0 as usize / BLOCK, SIZE.1 as usize / BLOCK);
-        let mut sums = vec![0.0; across * down];
-        for (index, value) in values.iter().enumerate() {
-            let (x, y) = (index % SIZE.0 as usize, index / SIZE.0 as usize);
-            sums[y / BLOCK * across + x / BLOCK] += value / (BLOCK * BLOCK) as f64;
-        }
-        sums
-    }
-
     fn picture_mean(prepared: &RenderScene, scene: &Scene, settings: Settings) -> f64 {
-        mean(&luminances(&film(prepared, &settings).develop(scene)))
+        mean(&blocks(&film(prepared, &settings).develop(scene), 1))
     }
 
     #[test]
     fn a_bright_room_has_the_light_that_paths_find_and_a_third_of_their_noise() {
         let scene = room(0.7);
         let [cached, paths] = both(&scene);
-        let picture =
-            |prepared: &RenderScene, spp, seed| luminances(&film(prepared, &settings(spp, seed)).develop(&scene));
+        let picture = |prepared: &RenderScene, spp, seed| film(prepared, &settings(spp, seed)).develop(&scene);
         // Twice the mean relative variance of a pixel
         let noise = |prepared: &RenderScene| {
-            let [first, second] = [1, 2].map(|seed| picture(prepared, 16, seed));
+            let [first, second] = [1, 2].map(|seed| blocks(&picture(prepared, 16, seed), 1));
             let squares = first.iter().zip(&second).map(|(a, b)| ((a - b) / (0.5 * (a + b))).powi(2));
             mean(&squares.collect::<Vec<_>>())
         };
         let (ours, theirs) = (noise(&cached), noise(&paths));
         assert!(ours < theirs / 3.0, "{ours} against {theirs} at 16 samples");
         // The mean of the picture, and that of its lower half with the shadow under the ball
-        let (values, reference) = (blocks(&picture(&cached, 16, 3)), blocks(&picture(&paths, 64, 9)));
+        let (values, reference) = (blocks(&picture(&cached, 16, 3), BLOCK), blocks(&picture(&paths, 64, 9), BLOCK));
         let half = values.len() / 2;
         for range in [0..values.len(), half..values.len()] {
             let ratio = mean(&values[range.clone()]) / mean(&reference[range]);

@@ -76,6 +76,8 @@ mod strand_surface;
 #[cfg(test)]
 mod strand_tests;
 mod subsurface;
+#[cfg(test)]
+mod test_pictures;
 mod texture;
 mod textured_surface;
 mod voxels;

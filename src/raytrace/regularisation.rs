@@ -69,8 +69,8 @@ fn roughness_of(pass: SamplePass) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::color::luminance;
     use crate::photo::Picture;
+    use crate::raytrace::test_pictures::{blocks, mean};
     use crate::raytrace::{RenderControl, Settings, Shortcut, prepare, render};
     use crate::scene::{
         Aim, Assets, Camera, Emitter, Light, LightId, Material, Object, ObjectId, Output, Scene, Shape, Transform,
@@ -123,21 +123,6 @@ mod tests {
     fn picture(prepared: &RenderScene, scene: &Scene, spp: u32, seed: u32) -> Picture {
         let settings = Settings { width: 36, height: 24, spp, seed, ..Settings::default() };
         render(prepared, &settings, &RenderControl::new(), &mut |_| ControlFlow::Continue(())).develop(scene)
-    }
-
-    /// Returns the sums of the luminances of blocks of so many pixels across and down.
-    fn blocks(picture: &Picture, side: usize) -> Vec<f64> {
-        let (width, height) = (picture.width as usize / side, picture.height as usize / side);
-        let mut sums = vec![0.0; width * height];
-        for (pixel, rgb) in picture.rgb.iter().enumerate() {
-            let (x, y) = (pixel % picture.width as usize, pixel / picture.width as usize);
-            sums[y / side * width + x / side] += f64::from(luminance(Vec3::from(*rgb)));
-        }
-        sums
-    }
-
-    fn mean(values: &[f64]) -> f64 {
-        values.iter().sum::<f64>() / values.len() as f64
     }
 
     #[test]

@@ -63,11 +63,12 @@ fn towards(scene: &Scene, point: Vec3) -> f32 {
     )
 }
 
-/// Returns the illuminance at positions that face `towards`.
+/// Returns the illuminance at positions that face the direction of `facing`, lux.
 fn metered(loaded: &Loaded, positions: &[Vec3], facing: impl Fn(Vec3) -> Vec3) -> Vec<f32> {
     metered_by(1024, loaded, positions, facing)
 }
 
+/// As [`metered`], with so many paths from each position.
 fn metered_by(paths: u32, loaded: &Loaded, positions: &[Vec3], facing: impl Fn(Vec3) -> Vec3) -> Vec<f32> {
     let meter = LightMeter::new(&loaded.scene, &loaded.assets, Vec3::ZERO).unwrap();
     let effort = MeterEffort { paths: Some(paths), ..MeterEffort::default() };

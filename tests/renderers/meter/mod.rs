@@ -301,6 +301,7 @@ fn the_direct_picture_plus_the_metered_bounced_light_is_the_path_traced_picture(
         let light = light(emitter, Output::Lumens(4000.0), point);
         scene.lights.push(Light { id: LightId(i as u32), name: format!("Light {i}"), ..light });
     }
+    // Another seed than those of the picture by `path`, 0 to 15
     let direct =
         studio::measure::illuminance(&scene, &Settings { seed: 99, ..studio::measure::square(Method::Direct, 32, 64) });
     let path = studio::measure::illuminance_over(16, &scene, &studio::measure::square(Method::Path, 16, 16));
