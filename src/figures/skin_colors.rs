@@ -20,8 +20,9 @@ const BLOOD: Vec3 = Vec3::new(0.97, 0.76, 0.73);
 const VEINS: Vec3 = Vec3::new(0.87, 0.82, 0.85);
 /// Factor on the lids: thin skin over muscle, with the roots of lashes.
 const LIDS: Vec3 = Vec3::new(0.74, 0.6, 0.58);
-/// Factor between the roots of dense hair, which shade each other.
-const ROOTS: Vec3 = Vec3::new(0.36, 0.33, 0.31);
+/// Factor between the roots of dense hair, which shade each other: less than what four times as many strands would let
+/// through, for a scalp that shines through gaps looks bald.
+const ROOTS: Vec3 = Vec3::new(0.2, 0.17, 0.15);
 /// Factor between the roots of white hair, which pass more light.
 const WHITE_ROOTS: Vec3 = Vec3::new(0.72, 0.7, 0.68);
 /// Distances over which the factor between the roots fades out at the hairline, of hair that begins dense and of hair that
@@ -228,7 +229,7 @@ mod tests {
         let colors = [cheek, forehead, scalp].map(|place| region_color(place, &figure));
         assert!(colors[0].y < 0.9 && colors[0].x > 0.95, "{}", colors[0]);
         assert!(colors[1].min_element() > 0.97, "{}", colors[1]);
-        assert!(colors[2].max_element() < 0.4, "{}", colors[2]);
+        assert!(colors[2].max_element() < 0.25, "{}", colors[2]);
         assert_eq!(skin_colors(&[NO_SKIN], &figure), [Vec3::ONE]);
         assert!(region_color(scalp, &bald).min_element() > 0.97);
         let shown = skin_colors(&[cheek, forehead, scalp], &figure);

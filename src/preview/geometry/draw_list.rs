@@ -5,8 +5,8 @@ use super::draw_item::{DrawItem, DrawPass, ShadowCasting, Sides, StrandItem};
 use super::mesh_cache::{EmitterSurface, MeshKey};
 use super::oriented_box::OrientedBox;
 use super::surface::{
-    FLAG_EMITTER, FLAG_GLOWS, FLAG_HOVERED, FLAG_RELIEF, FLAG_SELECTED, FLAG_SMOOTH_GLOSS, GpuDraw, GpuSurface,
-    diffusion_m, packed_layers,
+    FLAG_EMITTER, FLAG_GLOWS, FLAG_HOVERED, FLAG_RELIEF, FLAG_SELECTED, FLAG_SHORT_FIBRE, FLAG_SMOOTH_GLOSS, GpuDraw,
+    GpuSurface, diffusion_m, packed_layers,
 };
 use crate::photo::PhotometricLight;
 use crate::photo::emitter::EmitterShape;
@@ -19,6 +19,9 @@ use crate::scene::{
 };
 use glam::{Affine3A, Vec3};
 use std::hash::{DefaultHasher, Hash, Hasher};
+
+/// Mean length of strands under which they are short, metres: brows, lashes, stubble, crops.
+const SHORT_STRAND_M: f32 = 0.02;
 
 /// Everything that a frame draws. `surfaces`, `transforms`, `draws` and `picks` are indexed by surface.
 #[derive(Clone, Debug, Default)]
@@ -143,6 +146,7 @@ impl DrawList {
             let record = &mut self.surfaces[surface as usize];
             record.base_color = fibre.absorption_per_radius().into();
             record.diffusion_m = [0.0; 3];
+            record.flags |= if part.mean_length_m < SHORT_STRAND_M { FLAG_SHORT_FIBRE } else { 0 };
             (record.roughness, record.metallic) = (fibre.longitudinal_variance(), fibre.azimuthal_scale());
             let (instances, caster) = (part.instances.clone(), self.casters.len());
             self.strands.push(StrandItem { mesh, instances, mean_radius_m: part.mean_radius_m, surface, caster });

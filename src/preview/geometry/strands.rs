@@ -49,6 +49,8 @@ pub(crate) struct GpuStrandPart {
     pub name: String,
     pub instances: Range<u32>,
     pub mean_radius_m: f32,
+    /// Mean length of a strand, metres.
+    pub mean_length_m: f32,
 }
 
 impl GpuStrands {
@@ -83,12 +85,13 @@ fn shuffled(strands: &Strands) -> (Vec<Point>, Vec<GpuStrandPart>) {
     let mut points = vec![none];
     let mut parts = Vec::new();
     for part in strands.parts() {
-        let start = points.len();
+        let (start, mut length_m) = (points.len(), 0.0);
         let mut order: Vec<u32> = part.strands.clone().collect();
         order.sort_by_key(|&strand| strand.wrapping_mul(0x9e37_79b9).rotate_left(15).wrapping_mul(0x85eb_ca6b));
         for strand in order {
-            let own = strands.strand(strand as usize).iter();
-            points.extend(own.map(|p| Point { position: p.position.into(), radius: p.radius_m }));
+            let own = strands.strand(strand as usize);
+            length_m += own.windows(2).map(|ends| ends[0].position.distance(ends[1].position)).sum::<f32>();
+            points.extend(own.iter().map(|p| Point { position: p.position.into(), radius: p.radius_m }));
             if let Some(last) = points.last_mut() {
                 last.radius = -last.radius;
             }
@@ -97,7 +100,8 @@ fn shuffled(strands: &Strands) -> (Vec<Point>, Vec<GpuStrandPart>) {
             points[start..].iter().map(|p| p.radius.abs()).sum::<f32>() / (points.len() - start).max(1) as f32;
         // An instance starts at the point before its segment
         let instances = start as u32 - 1..points.len() as u32 - 1;
-        parts.push(GpuStrandPart { name: part.name.clone(), instances, mean_radius_m });
+        let mean_length_m = length_m / part.strands.len().max(1) as f32;
+        parts.push(GpuStrandPart { name: part.name.clone(), instances, mean_radius_m, mean_length_m });
     }
     points.extend([none; 3]);
     (points, parts)

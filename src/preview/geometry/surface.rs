@@ -18,6 +18,8 @@ pub(crate) const FLAG_HOVERED: u32 = 8;
 pub(crate) const FLAG_RELIEF: u32 = 16;
 /// The normal map is below the gloss; twin of `FLAG_SMOOTH_GLOSS` in `scene.wgsl`.
 pub(crate) const FLAG_SMOOTH_GLOSS: u32 = 32;
+/// Strands so short that light from behind meets what they grow from; twin of `FLAG_SHORT_FIBRE` in `scene.wgsl`.
+pub(crate) const FLAG_SHORT_FIBRE: u32 = 64;
 
 /// A surface in the storage buffer; twin of `Surface` in `scene.wgsl`.
 #[repr(C)]

@@ -11,6 +11,9 @@ const FIBRE_OFFSETS: vec2f = vec2f(0.25, 0.75);
 // Tilts of R, TT and TRT by the scales, radians: 4, -2 and -8 degrees.
 const FIBRE_TILTS: vec3f = vec3f(0.069813, -0.034907, -0.139626);
 
+// Number of strands that light passes on its way into shadowed hair, for an estimate.
+const STRANDS_IN_SHADOW: f32 = 5.0;
+
 struct Fibre {
     tangent: vec3f,
     facing: vec3f,
@@ -30,6 +33,8 @@ struct Fibre {
     others: vec3f,
     // Albedo, all lobes.
     albedo: vec3f,
+    // Part of the light that passes the strands in front of a shadowed one.
+    passed: vec3f,
 }
 
 fn fibre_fresnel(cosine: f32) -> f32 {
@@ -94,6 +99,8 @@ fn fibre(tangent: vec3f, view: vec3f, surface: Surface) -> Fibre {
     f.trt_1 = f.tt_1 * t_1 * r_1;
     f.others = 0.5 * (f.trt_0 * t_0 * r_0 / (1.0 - t_0 * r_0) + f.trt_1 * t_1 * r_1 / (1.0 - t_1 * r_1));
     f.albedo = 0.5 * (r_0 + r_1 + f.tt_0 + f.tt_1 + f.trt_0 + f.trt_1) + f.others;
+    let behind_hair = pow(min(f.albedo, vec3f(1.0)), vec3f(STRANDS_IN_SHADOW));
+    f.passed = select(behind_hair, vec3f(0.0), (surface.flags & FLAG_SHORT_FIBRE) != 0u);
     return f;
 }
 
@@ -130,10 +137,7 @@ fn hair_scatter(f: Fibre, direction: vec3f, angle2: f32) -> vec3f {
     return UNHIDDEN * fibre_scatter(f, direction, angle2) + f.albedo * f.albedo * (SCATTERED_ONWARDS / (4.0 * PI));
 }
 
-// Number of strands that light passes on its way into shadowed hair, for an estimate.
-const STRANDS_IN_SHADOW: f32 = 5.0;
-
 // Returns the visibility of a light, with the light that strands in front let pass and scatter onwards.
 fn scattered_visibility(f: Fibre, visibility: f32) -> vec3f {
-    return mix(pow(min(f.albedo, vec3f(1.0)), vec3f(STRANDS_IN_SHADOW)), vec3f(1.0), visibility);
+    return mix(f.passed, vec3f(1.0), visibility);
 }

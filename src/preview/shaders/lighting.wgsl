@@ -69,7 +69,7 @@ fn coat_factor(s: Shading, cosine: f32, hemisphere_fraction: f32) -> f32 {
 }
 
 // Returns the visibility of four lights at a pixel. Masks at reduced resolution are upsampled bilaterally: bilinear
-// weights, restricted to mask pixels on the pixel's plane.
+// weights, restricted to mask pixels on the pixel's plane. `depth` is negative for fibres, as in the mask.
 fn mask_visibility(mask: u32, at: vec2f, depth: f32, geometric_normal: vec3f) -> vec4f {
     if MASK_SCALE == 1u {
         return unpack4x8unorm(textureLoad(masks, vec2i(at), mask, 0).x);
@@ -87,7 +87,7 @@ fn mask_visibility(mask: u32, at: vec2f, depth: f32, geometric_normal: vec3f) ->
         let texel_at = min(corner + step, last);
         let texel = textureLoad(masks, texel_at, mask, 0).xy;
         let expected = dot(geometric_normal, pixel_ray(vec2f(texel_at * i32(MASK_SCALE)) + 0.5)) * scale;
-        let on_plane = abs(bitcast<f32>(texel.y) - expected) <= 0.01 * expected;
+        let on_plane = abs(bitcast<f32>(texel.y) - expected) <= 0.01 * abs(expected);
         let across = mix(1.0 - part, part, vec2f(step));
         let weight = (across.x * across.y + 1e-3) * select(1e-3, 1.0, on_plane);
         sum += unpack4x8unorm(texel.x) * weight;
@@ -120,8 +120,10 @@ fn sample_at(pixel: vec2u) -> GBufferSample {
 
 fn load_visibility(p: GBufferSample) {
     let geometric_normal = unpack_direction(p.packed.z);
+    let depth = max(bitcast<f32>(p.id.y), 1e-9);
+    let mask_depth = select(depth, -depth, p.packed.y >> 30u == 3u);
     for (var mask = 0u; mask < MASKS; mask++) {
-        visibilities[mask] = mask_visibility(mask, p.at, max(bitcast<f32>(p.id.y), 1e-9), geometric_normal);
+        visibilities[mask] = mask_visibility(mask, p.at, mask_depth, geometric_normal);
     }
 }
 
@@ -212,7 +214,9 @@ fn shade(p: GBufferSample) -> ShadedLight {
     if HAS_FIBRES {
         for (var i = 0u; i < select(0u, 1u, is_fibre); i++) {
             f = fibre(s.normal, s.view, surfaces[(p.id.x & ID_INDEX_MASK) - 1u]);
-            scattered = f.albedo * (0.5 / PI) * (ambient(position, f.facing) + ambient(position, -f.facing));
+            // Behind a fibre there is the head or more hair
+            let behind = ambient(position, -f.facing) * f.passed;
+            scattered = f.albedo * (0.5 / PI) * (ambient(position, f.facing) + behind);
         }
     }
 

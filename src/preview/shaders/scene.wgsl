@@ -69,11 +69,15 @@ struct Surface {
 const FLAG_RELIEF: u32 = 16u;
 // Flag of a surface whose normal map is below the gloss.
 const FLAG_SMOOTH_GLOSS: u32 = 32u;
+// Flag of strands so short that light from behind meets what they grow from.
+const FLAG_SHORT_FIBRE: u32 = 64u;
 
 // Outline flags in the id buffer; the other bits hold the surface index plus one, 0 for the background.
 const ID_SELECTED: u32 = 1u << 31u;
 const ID_HOVERED: u32 = 1u << 30u;
 const ID_INDEX_MASK: u32 = ID_HOVERED - 1u;
+// Sign bit of the depth in a shadow mask, set for fibres: their visibility is not that of the surface that they lie on.
+const MASK_FIBRE: u32 = 0x80000000u;
 
 struct Light {
     position: vec3f,

@@ -1,4 +1,5 @@
 // The blur of the shadow mask: the mean of 3 x 3 mask pixels on the same plane, which averages the nine tap rotations.
+// Fibres, whose depths are negative in the mask, and surfaces are kept apart.
 
 @group(1) @binding(0) var gbuffer: texture_2d<u32>;
 @group(1) @binding(1) var ids: texture_2d<u32>;
@@ -27,7 +28,7 @@ fn fragment(@builtin(position) at: vec4f) -> @location(0) vec2u {
         for (var x = -1; x <= 1; x++) {
             let texel = textureLoad(mask, clamp(mask_pixel + vec2i(x, y), vec2i(0), last), 0).xy;
             let expected = (here + f32(x) * right + f32(y) * down) * scale;
-            let on_plane = abs(bitcast<f32>(texel.y) - expected) <= 0.01 * expected || (x == 0 && y == 0);
+            let on_plane = abs(bitcast<f32>(texel.y) - expected) <= 0.01 * abs(expected) || (x == 0 && y == 0);
             let weight = select(0.0, 1.0, on_plane);
             sum += unpack4x8unorm(texel.x) * weight;
             count += weight;

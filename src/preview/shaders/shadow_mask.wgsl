@@ -13,7 +13,7 @@ struct Slot {
     position: vec3f,
     layer: u32,
     right: vec3f,
-    // 0 no shadow, 1 perspective, 2 parallel, 3 cube.
+    // 0 no shadow, 1 perspective, 2 parallel, 3 cube, 4 cube without the face behind.
     kind: u32,
     up: vec3f,
     // Near distance, metres: depth is near over distance. In a parallel view, the depth range of the map.
@@ -68,8 +68,10 @@ struct Receiver {
     layer: i32,
     inside: bool,
     resolution: f32,
-    // Projected fraction of the emitter's width and height in this direction.
-    foreshortening: vec2f,
+    // Half axes of the emitter along those of the map, as seen from here: metres, or tangents in a parallel view.
+    softness: vec2f,
+    // Height of the ends of these half axes over the receiver plane, from the emitter's centre.
+    rise: vec2f,
     // Metres per unit of depth at the receiver; 0 for all but fibres.
     hair_m: f32,
     is_parallel: bool,
@@ -109,9 +111,10 @@ fn receiver(slot: u32, position: vec3f, geometric_normal: vec3f, is_fibre: bool,
     );
     var layer = shadows.slots[slot].layer;
     var r: Receiver;
-    r.foreshortening = vec2f(1.0);
-    if shadows.slots[slot].kind == 3u {
-        // Select the cube face: +X, -X, +Y, -Y, +Z, -Z, oriented as in `shadows/views.rs`. Forward is -Z
+    r.softness = shadows.slots[slot].softness;
+    var has_map = true;
+    if shadows.slots[slot].kind >= 3u {
+        // Select the cube face: +X, -X, +Y, -Y, -Z (forwards), +Z, oriented as in `shadows/views.rs`
         let size = abs(local);
         let by_x = size.x >= size.y && size.x >= size.z;
         let by_y = !by_x && size.y >= size.z;
@@ -120,9 +123,12 @@ fn receiver(slot: u32, position: vec3f, geometric_normal: vec3f, is_fibre: bool,
         local = to_face(local, by_x, by_y, sign);
         normal = to_face(normal, by_x, by_y, sign);
         // Side faces see a panel edge-on
-        r.foreshortening = select(select(vec2f(1.0), vec2f(1.0, 0.3), by_y), vec2f(0.3, 1.0), by_x);
-        layer += select(select(4u, 2u, by_y), 0u, by_x) + select(1u, 0u, positive);
+        r.softness *= select(select(vec2f(1.0), vec2f(1.0, 0.3), by_y), vec2f(0.3, 1.0), by_x);
+        let face = select(select(4u, 2u, by_y), 0u, by_x) + select(0u, 1u, positive == !(by_x || by_y));
+        has_map = face < 5u || shadows.slots[slot].kind == 3u;
+        layer += face;
     }
+    r.rise = vec2f(normal.x, -normal.y) * r.softness;
     let height = dot(normal, local);
     let near = shadows.slots[slot].near_m;
     let parallel = shadows.slots[slot].kind == 2u;
@@ -138,7 +144,7 @@ fn receiver(slot: u32, position: vec3f, geometric_normal: vec3f, is_fibre: bool,
     // Clamp the slope of planes that the light sees edge-on; they are dark
     let steepest = 0.25 * select(abs(r.depth), 1.0, parallel);
     r.slope = clamp(vec2f(slope.x, -slope.y), vec2f(-steepest), vec2f(steepest));
-    r.inside = (parallel || local.z > 0.0) && all(r.at > vec2f(0.0)) && all(r.at < vec2f(resolution));
+    r.inside = has_map && (parallel || local.z > 0.0) && all(r.at > vec2f(0.0)) && all(r.at < vec2f(resolution));
     // Choose the side of the map. The far side of solids gives tight contact shadows. The near side serves receivers
     // that face away from the emitter's centre, which the body itself occludes. Across the terminator the choice is
     // dithered, and the blur turns it into a blend. Fibres take the near side: what occludes lashes and brows from behind
@@ -181,8 +187,7 @@ fn slot_visibility(slot: u32, position: vec3f, geometric_normal: vec3f, is_fibre
     let height = select(dot(geometric_normal, to_light), -dot(geometric_normal, shadows.slots[slot].forward), parallel);
     let below = height < -length(shadows.slots[slot].softness) && shadows.slots[slot].kind != 0u;
     let decided = !r.inside || shadows.slots[slot].kind == 0u || below;
-    let softness = max(shadows.slots[slot].softness * r.foreshortening, vec2f(1e-5))
-        * (r.resolution / shadows.slots[slot].field);
+    let softness = max(r.softness, vec2f(1e-5)) * (r.resolution / shadows.slots[slot].field);
     let spread = softness * select(1.0 / near, near, parallel);
     // Blocker search: the radius is the projection of the emitter through a blocker half-way to the light. Taps are
     // denser near the centre, where blockers in contact with the receiver are
@@ -205,6 +210,7 @@ fn slot_visibility(slot: u32, position: vec3f, geometric_normal: vec3f, is_fibre
     let gap = found.x / max(found.y, 1e-6);
     let radius = clamp(spread * gap, vec2f(0.7), vec2f(reach));
     var blocked = 0.0;
+    var total = 0.0;
     tap = turn;
     var i = 0u;
     // Skip the filter where the search found no blocker, or only blockers over the whole penumbra
@@ -212,33 +218,27 @@ fn slot_visibility(slot: u32, position: vec3f, geometric_normal: vec3f, is_fibre
     let skip_filter = decided || hits == 0u || fully_blocked;
     let taps = select(FILTER_TAPS, DRAFT_FILTER_TAPS, frame.mask_scale > 2u);
     let filter_taps = select(taps, 1u, skip_filter);
-    // Percentage-closer filter over the penumbra
+    // Percentage-closer filter over the penumbra. Each tap stands for a point of the emitter, weighted by its height over
+    // the receiver's horizon, as in shading; those below count only where all are
+    let least_weight = 1e-3 * length(r.softness) + 1e-6;
     loop {
-        blocked += blocker_at(r, tap * sqrt((f32(i) + 0.5) / f32(taps)) * radius, spread).y;
+        let at = tap * sqrt((f32(i) + 0.5) / f32(taps));
+        let weight = max(height + dot(r.rise, at), 0.0) + least_weight;
+        blocked += weight * blocker_at(r, at * radius, spread).y;
+        total += weight;
         tap = GOLDEN_TURN * tap;
         i++;
         continuing {
             break if i >= filter_taps;
         }
     }
-    let searched = select(1.0 - blocked / f32(taps), select(1.0, 0.0, fully_blocked), skip_filter);
-    // Count only the part of the emitter above the receiver's horizon: shading leaves out the rest, too
-    let above = part_above_horizon(slot, geometric_normal, height);
-    return select(min(searched / above, 1.0), select(1.0, 0.0, below), decided);
-}
-
-// Returns the part of an emitter's outline, taken as an ellipse, above a receiver's horizon, at least 0.02. It is 1 for a
-// receiver that faces the emitter's centre: in its map, the far side, its own body does not block the part below.
-fn part_above_horizon(slot: u32, geometric_normal: vec3f, height: f32) -> f32 {
-    let axes = vec2f(dot(geometric_normal, shadows.slots[slot].right), dot(geometric_normal, shadows.slots[slot].up));
-    let extent = max(length(axes * shadows.slots[slot].softness), 1e-6);
-    let t = clamp(height / extent, -1.0, 0.0);
-    let segment = 0.5 + (t * sqrt(1.0 - t * t) + asin(t)) / PI;
-    return select(max(segment, 0.02), 1.0, height > 0.0);
+    let searched = select(1.0 - blocked / total, select(1.0, 0.0, fully_blocked), skip_filter);
+    return select(searched, select(1.0, 0.0, below), decided);
 }
 
 // Returns the irradiance weight of a part of an emitter at a surface. A part whose centre is below the horizon sees the
-// surface from behind and its map holds no valid shadow there: its weight is tiny, unless all parts are below.
+// surface from behind and its map holds no valid shadow there: its weight is tiny, unless all parts are below. No part has
+// none: the neighbours of a surface that faces away from all of them read its visibility, too.
 fn slot_weight(slot: u32, position: vec3f, normal: vec3f) -> f32 {
     let to_part = shadows.slots[slot].position - position;
     let squared = max(dot(to_part, to_part), 1e-6);
@@ -246,7 +246,7 @@ fn slot_weight(slot: u32, position: vec3f, normal: vec3f) -> f32 {
     let axes = vec2f(dot(normal, shadows.slots[slot].right), dot(normal, shadows.slots[slot].up));
     let extent = max(length(axes * shadows.slots[slot].softness), 1e-6);
     let above = max(height, 0.0) + 1e-3 * max(height + extent, 0.0);
-    return above * max(-dot(to_part, shadows.slots[slot].forward), 0.0) / (squared * squared);
+    return above * max(-dot(to_part, shadows.slots[slot].forward), 0.0) / (squared * squared) + 1e-9;
 }
 
 // Returns the plane that a fibre receives light with: it faces the light.
@@ -277,7 +277,7 @@ fn visibility(light: u32, position: vec3f, surface_normal: vec3f, plane: vec3f, 
             break if !SUBDIVIDED || part >= count;
         }
     }
-    return select(sum / total, 1.0, total <= 0.0);
+    return sum / total;
 }
 
 @fragment
@@ -304,5 +304,5 @@ fn fragment(@builtin(position) at: vec4f) -> @location(0) vec2u {
         visibility(2u, position, normal, geometric_normal, is_fibre, turn, dither),
         visibility(3u, position, normal, geometric_normal, is_fibre, turn, dither),
     );
-    return vec2u(pack4x8unorm(lit), depth);
+    return vec2u(pack4x8unorm(lit), depth | select(0u, MASK_FIBRE, is_fibre));
 }

@@ -7,7 +7,7 @@ use glam::{Mat4, Vec3};
 /// Light id and emitter part; part 0 is the whole emitter, seen from its centre.
 pub(crate) type ViewOwner = (u32, u32);
 
-/// The views of one owner in consecutive layers: one, or the six of a cube map.
+/// The views of one owner in consecutive layers: one, or those of a cube map.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct LightViews {
     pub owner: ViewOwner,

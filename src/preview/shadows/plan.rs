@@ -212,7 +212,7 @@ mod tests {
         let casters = [unit_box_at(Vec3::ZERO), unit_box_at(Vec3::Y * 8.0)];
         let plan = ShadowPlan::new(&table(&[point]), &casters, &VisibleReceivers::default(), false);
         assert_eq!((plan.views, plan.masks[0].slots[0][0].kind), (6, Projection::Cube as u32));
-        let axes = [Vec3::X, Vec3::NEG_X, Vec3::Y, Vec3::NEG_Y, Vec3::Z, Vec3::NEG_Z];
+        let axes = [Vec3::X, Vec3::NEG_X, Vec3::Y, Vec3::NEG_Y, Vec3::NEG_Z, Vec3::Z];
         for (view, axis) in plan.lights[0].views.iter().zip(axes) {
             let p = project(&view.clip_from_world, Vec3::from(point.position) + axis * 2.0);
             assert!(p.truncate().length() < 1e-5 && p.z > 0.0, "{axis}: {p}");
@@ -249,9 +249,11 @@ mod tests {
         let all_round = [unit_box_at(Vec3::ZERO), unit_box_at(Vec3::Y * 8.0)];
         let plan =
             ShadowPlan::new(&table(&[light(LightKind::Rect); 16]), &all_round, &VisibleReceivers::default(), false);
-        // Eight cubes use up all views
+        // Nine cubes of five faces leave three views
         let kind = |light: usize| plan.masks[light / 4].slots[light % 4][0].kind;
-        assert_eq!((plan.views, kind(7), kind(8)), (MAX_VIEWS, Projection::Cube as u32, 0));
+        let kinds = [8, 9, 11, 12].map(kind);
+        let [cube, single] = [Projection::PanelCube, Projection::Perspective].map(|kind| kind as u32);
+        assert_eq!((plan.views, kinds), (MAX_VIEWS, [cube, single, single, 0]));
         assert_eq!(
             ShadowPlan::new(&table(&[light(LightKind::Rect)]), &[], &VisibleReceivers::default(), false),
             ShadowPlan::default()

@@ -10,6 +10,8 @@ pub(crate) enum Projection {
     Perspective = 1,
     Parallel = 2,
     Cube = 3,
+    /// The five faces of a cube before a panel, which shines forwards.
+    PanelCube = 4,
 }
 
 /// The shadow map of a light or of a part of its emitter; twin of `Slot` in `shadow_mask.wgsl`. All zero: no shadow.

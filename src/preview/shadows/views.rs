@@ -13,6 +13,9 @@ const MAX_TANGENT: f32 = 3.73;
 const CUBE_FACE: f32 = 1.04;
 /// Tangent of the half angle of a cube face that is used alone, in close-ups: receivers near a cube edge fit into it.
 const SINGLE_FACE: f32 = 1.6;
+/// Number of faces of cube maps, around a light and before a panel.
+const CUBE_FACES: usize = 6;
+const PANEL_CUBE_FACES: usize = 5;
 /// Near plane, metres.
 const NEAR_M: f32 = 0.01;
 
@@ -39,16 +42,16 @@ pub(crate) fn fit_views(
         kind if kind == LightKind::Sun as u32 => parallel(&frame, &corners, light.softness(), receivers),
         kind if kind == LightKind::Spot as u32 => perspective(&frame, &corners, spot_limit, focus),
         kind if kind == LightKind::Rect as u32 || kind == LightKind::Disc as u32 => {
-            if max_views >= 6 && corners.iter().any(|corner| !is_within(&frame, *corner)) {
-                return cube(&frame, focus);
+            if max_views >= PANEL_CUBE_FACES && corners.iter().any(|corner| !is_within(&frame, *corner)) {
+                return cube(&frame, Projection::PanelCube, focus);
             }
             perspective(&frame, &corners, MAX_TANGENT, focus)
         }
         _ => {
             let centre = corners.iter().sum::<Vec3>() / corners.len() as f32;
             let towards = crate::math::look_at(frame.translation.into(), centre, 0.0);
-            if max_views >= 6 && corners.iter().any(|corner| !is_within(&towards, *corner)) {
-                return cube(&Affine3A::from_translation(light.position.into()), focus);
+            if max_views >= CUBE_FACES && corners.iter().any(|corner| !is_within(&towards, *corner)) {
+                return cube(&Affine3A::from_translation(light.position.into()), Projection::Cube, focus);
             }
             perspective(&towards, &corners, MAX_TANGENT, focus)
         }
@@ -189,9 +192,14 @@ fn parallel(
     })
 }
 
-/// Returns the views of a cube map in the order +X, -X, +Y, -Y, +Z, -Z of the frame, oriented as in `shadow_mask.wgsl`;
-/// or a single face where a focused part of it contains all receivers with their margin.
-fn cube(frame: &Affine3A, (margin, receivers): (Vec2, &VisibleReceivers)) -> (GpuShadowSlot, Vec<Mat4>) {
+/// Returns the views of a cube map in the order +X, -X, +Y, -Y, -Z (forwards), +Z of the frame, oriented as in
+/// `shadow_mask.wgsl`, without the last before a panel; or a single face where a focused part of it contains all receivers
+/// with their margin.
+fn cube(
+    frame: &Affine3A,
+    kind: Projection,
+    (margin, receivers): (Vec2, &VisibleReceivers),
+) -> (GpuShadowSlot, Vec<Mat4>) {
     let quarter = std::f32::consts::FRAC_PI_2;
     // Rotations of the faces
     let turns = [
@@ -199,8 +207,8 @@ fn cube(frame: &Affine3A, (margin, receivers): (Vec2, &VisibleReceivers)) -> (Gp
         Quat::from_rotation_y(quarter),
         Quat::from_rotation_x(quarter),
         Quat::from_rotation_x(-quarter),
-        Quat::from_rotation_y(2.0 * quarter),
         Quat::IDENTITY,
+        Quat::from_rotation_y(2.0 * quarter),
     ];
     let single = Vec2::splat(SINGLE_FACE);
     // Use a single face if it contains all receivers
@@ -212,11 +220,12 @@ fn cube(frame: &Affine3A, (margin, receivers): (Vec2, &VisibleReceivers)) -> (Gp
             return (slot(&frame, Projection::Perspective, low, high - low), vec![view]);
         }
     }
-    // Otherwise all six faces
+    // Otherwise all faces
     let face = Vec2::splat(CUBE_FACE);
     let view = |turn| {
         let inverse = (*frame * Affine3A::from_quat(turn)).inverse();
         perspective_matrix(-face, face) * Mat4::from(inverse)
     };
-    (slot(frame, Projection::Cube, -face, 2.0 * face), turns.map(view).to_vec())
+    let faces = if kind == Projection::PanelCube { PANEL_CUBE_FACES } else { CUBE_FACES };
+    (slot(frame, kind, -face, 2.0 * face), turns.into_iter().take(faces).map(view).collect())
 }
