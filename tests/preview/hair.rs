@@ -126,7 +126,7 @@ const PORTRAITS: [(&str, &str, f32); 6] = [
     ("loop", "Key dish", 0.6),
     ("gel_portrait", "Teal strip", 0.6),
     ("loop", "Hair strip", 0.6),
-    ("three_point", "Hair strip", 1.2),
+    ("three_point", "Hair strip", 0.6),
 ];
 
 #[test]

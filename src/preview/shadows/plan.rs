@@ -220,6 +220,25 @@ mod tests {
     }
 
     #[test]
+    fn a_strip_beside_two_large_panels_among_casters_is_subdivided() {
+        // With maps of six faces, of which one looks back through the panel, there were too few for the strip.
+        let half_axes = |right_m: f32, up_m: f32| GpuLight {
+            right: [right_m, 0.0, 0.0],
+            up: [0.0, 0.0, -up_m],
+            ..light(LightKind::Rect)
+        };
+        let casters = [unit_box_at(Vec3::Y * 2.5), unit_box_at(Vec3::Y * 8.0)];
+        let panels = [
+            half_axes(0.5, 0.5),
+            half_axes(0.15, 0.6),
+            GpuLight { kind: LightKind::Disc as u32, ..half_axes(0.3, 0.3) },
+        ];
+        let plan = ShadowPlan::new(&table(&panels), &casters, &VisibleReceivers::default(), true);
+        let kinds = plan.masks[0].slots.map(|slots| slots[0].kind);
+        assert_eq!((kinds[1], plan.masks[0].counts), (Projection::PanelCube as u32, [4, 3, 1, 0]));
+    }
+
+    #[test]
     fn depth_is_affine_across_a_plane() {
         // The shader's receiver plane depth requires that depth is linear along a line on the map
         let view = ShadowPlan::new(
