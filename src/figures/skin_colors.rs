@@ -20,8 +20,8 @@ const BLOOD: Vec3 = Vec3::new(0.97, 0.76, 0.73);
 const VEINS: Vec3 = Vec3::new(0.87, 0.82, 0.85);
 /// Factor on the lids: thin skin over muscle, with the roots of lashes.
 const LIDS: Vec3 = Vec3::new(0.74, 0.6, 0.58);
-/// Factor between the roots of dense hair, which shade each other: less than what four times as many strands would let
-/// through, for a scalp that shines through gaps looks bald.
+/// Factor between the roots of dense hair, which shade each other. It makes up for the hairs that a head has more than a
+/// figure: between so few a brighter scalp would look bald.
 const ROOTS: Vec3 = Vec3::new(0.2, 0.17, 0.15);
 /// Factor between the roots of white hair, which pass more light.
 const WHITE_ROOTS: Vec3 = Vec3::new(0.72, 0.7, 0.68);

@@ -171,7 +171,7 @@ fn blacken_all_but_hair(object: &mut Object) {
 
 #[test]
 fn hair_in_all_the_light_of_a_portrait_is_as_bright_as_the_tracers() {
-    // Light of the backdrop passed through the head: hair before it was two thirds of a stop too bright.
+    // Light of the backdrop passed through the head: the hair was 0.9 stop too bright.
     const LIMIT: f32 = 0.3;
     let Some(mut renderer) = shared_renderer() else { return };
     let loaded = shipped("three_point");

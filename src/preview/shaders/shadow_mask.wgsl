@@ -218,8 +218,8 @@ fn slot_visibility(slot: u32, position: vec3f, geometric_normal: vec3f, is_fibre
     let skip_filter = decided || hits == 0u || fully_blocked;
     let taps = select(FILTER_TAPS, DRAFT_FILTER_TAPS, frame.mask_scale > 2u);
     let filter_taps = select(taps, 1u, skip_filter);
-    // Percentage-closer filter over the penumbra. Each tap stands for a point of the emitter, weighted by its height over
-    // the receiver's horizon, as in shading; those below count only where all are
+    // Percentage-closer filter over the penumbra. Each tap stands for a point of the emitter and is weighted by its height
+    // over the receiver's horizon, as in shading. Points below count only where all are
     let least_weight = 1e-3 * length(r.softness) + 1e-6;
     loop {
         let at = tap * sqrt((f32(i) + 0.5) / f32(taps));
@@ -237,8 +237,8 @@ fn slot_visibility(slot: u32, position: vec3f, geometric_normal: vec3f, is_fibre
 }
 
 // Returns the irradiance weight of a part of an emitter at a surface. A part whose centre is below the horizon sees the
-// surface from behind and its map holds no valid shadow there: its weight is tiny, unless all parts are below. No part has
-// none: the neighbours of a surface that faces away from all of them read its visibility, too.
+// surface from behind and its map holds no valid shadow there: its weight is tiny, unless all parts are below. It is never
+// zero, so that a surface below all parts, whose visibility its neighbours read, too, has their mean.
 fn slot_weight(slot: u32, position: vec3f, normal: vec3f) -> f32 {
     let to_part = shadows.slots[slot].position - position;
     let squared = max(dot(to_part, to_part), 1e-6);
