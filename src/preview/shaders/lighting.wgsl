@@ -121,7 +121,7 @@ fn sample_at(pixel: vec2u) -> GBufferSample {
 fn load_visibility(p: GBufferSample) {
     let geometric_normal = unpack_direction(p.packed.z);
     let depth = max(bitcast<f32>(p.id.y), 1e-9);
-    let mask_depth = select(depth, -depth, p.packed.y >> 30u == 3u);
+    let mask_depth = select(depth, -depth, is_fibre_color(p.packed.y));
     for (var mask = 0u; mask < MASKS; mask++) {
         visibilities[mask] = mask_visibility(mask, p.at, mask_depth, geometric_normal);
     }
@@ -208,7 +208,7 @@ fn shade(p: GBufferSample) -> ShadedLight {
     }
 
     // Fibres have their tangent in place of the normal, and scatter light over the whole sphere
-    let is_fibre = HAS_FIBRES && p.packed.y >> 30u == 3u;
+    let is_fibre = HAS_FIBRES && is_fibre_color(p.packed.y);
     var f: Fibre;
     var scattered = vec3f(0.0);
     if HAS_FIBRES {

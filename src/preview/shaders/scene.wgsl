@@ -208,6 +208,11 @@ fn unpack_radiance(packed: u32) -> vec3f {
     return q * bitcast<f32>(((packed >> 27u) + 103u) << 23u);
 }
 
+// Returns true if a pixel of the G-buffer shows a fibre, by the kind of surface in its packed colour.
+fn is_fibre_color(packed_color: u32) -> bool {
+    return packed_color >> 30u == 3u;
+}
+
 // Returns the world direction through a pixel position, 1 m long along the optical axis.
 fn pixel_ray(pixel: vec2f) -> vec3f {
     let ndc = pixel / frame.size * 2.0 - 1.0;

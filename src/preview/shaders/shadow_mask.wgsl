@@ -66,6 +66,7 @@ struct Receiver {
     // Depth gradient of the receiver plane per texel.
     slope: vec2f,
     layer: i32,
+    // The light has a map there, and the receiver lies on it.
     inside: bool,
     resolution: f32,
     // Half axes of the emitter along those of the map, as seen from here: metres, or tangents in a parallel view.
@@ -287,7 +288,7 @@ fn fragment(@builtin(position) at: vec4f) -> @location(0) vec2u {
     let depth = textureLoad(ids, pixel, 0).y;
     let texel = textureLoad(gbuffer, pixel, 0).xyz;
     let packed = texel.xz;
-    let is_fibre = texel.y >> 30u == 3u;
+    let is_fibre = is_fibre_color(texel.y);
     let normal = unpack_direction(packed.x);
     let geometric_normal = unpack_direction(packed.y);
     let ray = pixel_ray(vec2f(pixel) + 0.5);
