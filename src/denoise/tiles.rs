@@ -1,4 +1,4 @@
-//! A picture's way through the network: in one run, or in tiles where memory would be short.
+//! A picture's way through the network: mirrored beyond its borders, in one run, or in tiles where memory would be short.
 //!
 //! A run takes some 250 bytes a pixel. Tiles overlap by as much as the network sees around a pixel, so that their pixels
 //! are those of one run, bit for bit.
@@ -49,33 +49,46 @@ fn tile_counts(width: usize, height: usize, max_pixels: usize) -> (usize, usize)
     }
 }
 
-/// Denoises a picture in tiles of at most about `max_pixels`.
+/// A picture and its AOVs, continued beyond each border by their mirror image.
+#[derive(Clone, Copy, Debug)]
+pub struct MirroredPicture<'a> {
+    picture: &'a Picture,
+    aovs: &'a AovPicture,
+    /// Pixels beyond each border.
+    margin: usize,
+}
+
+/// Denoises a picture in tiles of at most about `max_pixels`. The margin is not in the result.
 pub fn denoise(
     network: &Network,
-    picture: &Picture,
-    aovs: &AovPicture,
+    mirrored: MirroredPicture<'_>,
     max_pixels: usize,
     is_cancelled: &(dyn Fn() -> bool + Sync),
 ) -> Result<Picture, Cancelled> {
+    let MirroredPicture { picture, margin, .. } = mirrored;
     let (width, height) = (picture.width as usize, picture.height as usize);
-    let pixels = width * height;
-    if pixels == 0 || [picture.rgb.len(), aovs.albedo.len(), aovs.normal.len()] != [pixels; 3] {
-        return Ok(picture.clone());
-    }
     let scale = transfer::input_scale(picture);
     let mut denoised = Picture::new(picture.width, picture.height);
-    let (columns, rows) = tile_counts(width, height, max_pixels);
-    for y in spans(height, rows) {
-        for x in spans(width, columns) {
-            let input = network_input(picture, aovs, scale, &x.input, &y.input);
+    let (columns, rows) = tile_counts(width + 2 * margin, height + 2 * margin, max_pixels);
+    // What a tile shows of the picture itself
+    let visible = |span: &Span, length: usize| span.output.start.max(margin)..span.output.end.min(margin + length);
+    for y in spans(height + 2 * margin, rows) {
+        for x in spans(width + 2 * margin, columns) {
+            let (visible_columns, visible_rows) = (visible(&x, width), visible(&y, height));
+            if visible_columns.is_empty() || visible_rows.is_empty() {
+                continue;
+            }
+            let input = mirrored.network_input(scale, &x.input, &y.input);
             let output = network.run(&input, is_cancelled)?;
             let tile_width = input.shape.width;
             drop(input);
-            let (left, top) = (x.output.start - x.input.start, y.output.start - y.input.start);
-            let target = &mut denoised.rgb[y.output.start * width..y.output.end * width];
+            let (left, top) = (visible_columns.start - x.input.start, visible_rows.start - y.input.start);
+            let of_picture = |range: Range<usize>| range.start - margin..range.end - margin;
+            let (columns, rows) = (of_picture(visible_columns), of_picture(visible_rows));
+            let target = &mut denoised.rgb[rows.start * width..rows.end * width];
             target.par_chunks_mut(width).enumerate().for_each(|(row, target)| {
                 let source = &output[(top + row) * tile_width + left..];
-                for (pixel, encoded) in target[x.output.clone()].iter_mut().zip(source) {
+                for (pixel, encoded) in target[columns.clone()].iter_mut().zip(source) {
                     *pixel = encoded.map(|value| transfer::decode(value) / scale);
                 }
             });
@@ -84,31 +97,45 @@ pub fn denoise(
     if is_cancelled() { Err(Cancelled) } else { Ok(denoised) }
 }
 
-/// Returns the input of the network for some pixels: encoded colour, albedo, normal from 0 to 1. It is zero where the
-/// aligned size is larger.
-fn network_input(
-    picture: &Picture,
-    aovs: &AovPicture,
-    scale: f32,
-    columns: &Range<usize>,
-    rows: &Range<usize>,
-) -> FeatureMap {
-    let aligned = |range: &Range<usize>| range.len().next_multiple_of(ALIGNMENT);
-    let mut input = FeatureMap::new(aligned(columns), aligned(rows), INPUT_CHANNELS);
-    let shape = input.shape;
-    input.data_mut().par_chunks_mut(shape.len()).zip(rows.clone()).for_each(|(row, y)| {
-        let first = y * picture.width as usize;
-        for (features, index) in row[LEFT..].iter_mut().zip(first + columns.start..first + columns.end) {
-            let color = picture.rgb[index].map(|value| transfer::encode(value * scale));
-            let albedo = aovs.albedo[index].map(|value| clamped(value, 0.0));
-            let normal = aovs.normal[index].map(|value| clamped(value, -1.0) * 0.5 + 0.5);
-            *features = Block::ZERO;
-            for (channels, values) in features.0.chunks_exact_mut(3).zip([color, albedo, normal]) {
-                channels.copy_from_slice(&values);
+impl<'a> MirroredPicture<'a> {
+    /// Returns a picture with a margin of so many pixels; none if it is empty or the sizes differ.
+    pub fn new(picture: &'a Picture, aovs: &'a AovPicture, margin: usize) -> Option<Self> {
+        let pixels = picture.width as usize * picture.height as usize;
+        let is_whole = [picture.rgb.len(), aovs.albedo.len(), aovs.normal.len()] == [pixels; 3];
+        (pixels > 0 && is_whole).then_some(MirroredPicture { picture, aovs, margin })
+    }
+
+    /// Returns the input of the network for some pixels, which count from the start of the margin: encoded colour, albedo,
+    /// normal from 0 to 1. It is zero where the aligned size is larger.
+    fn network_input(&self, scale: f32, columns: &Range<usize>, rows: &Range<usize>) -> FeatureMap {
+        let MirroredPicture { picture, aovs, .. } = *self;
+        let aligned = |range: &Range<usize>| range.len().next_multiple_of(ALIGNMENT);
+        let mut input = FeatureMap::new(aligned(columns), aligned(rows), INPUT_CHANNELS);
+        let shape = input.shape;
+        let (width, height) = (picture.width as usize, picture.height as usize);
+        input.data_mut().par_chunks_mut(shape.len()).zip(rows.clone()).for_each(|(row, y)| {
+            let first = self.pixel_at(y, height) * width;
+            for (features, x) in row[LEFT..].iter_mut().zip(columns.clone()) {
+                let index = first + self.pixel_at(x, width);
+                let color = picture.rgb[index].map(|value| transfer::encode(value * scale));
+                let albedo = aovs.albedo[index].map(|value| clamped(value, 0.0));
+                let normal = aovs.normal[index].map(|value| clamped(value, -1.0) * 0.5 + 0.5);
+                *features = Block::ZERO;
+                for (channels, values) in features.0.chunks_exact_mut(3).zip([color, albedo, normal]) {
+                    channels.copy_from_slice(&values);
+                }
             }
-        }
-    });
-    input
+        });
+        input
+    }
+
+    /// Returns the pixel, on an axis of `length` pixels, that is shown so far from the start of the margin.
+    fn pixel_at(&self, position: usize, length: usize) -> usize {
+        // Mirrored in both borders, the picture repeats itself after twice its length
+        let period = 2 * length;
+        let offset = (position + period - self.margin % period) % period;
+        offset.min(period - 1 - offset)
+    }
 }
 
 /// Clamps a value to `min` to 1; zero for what is no number.
@@ -132,6 +159,19 @@ mod tests {
                 assert_eq!(span.input.end, (span.output.end + OVERLAP).min(length));
             }
         }
+    }
+
+    #[test]
+    fn a_margin_mirrors_the_picture_however_small_it_is() {
+        let at = |length: u32, margin: usize| {
+            let (picture, aovs) = (Picture::new(length, 1), AovPicture::new(length, 1));
+            let mirrored = MirroredPicture::new(&picture, &aovs, margin).unwrap();
+            (0..length as usize + 2 * margin).map(|x| mirrored.pixel_at(x, length as usize)).collect::<Vec<_>>()
+        };
+        assert_eq!(at(3, 0), [0, 1, 2]);
+        assert_eq!(at(4, 2), [1, 0, 0, 1, 2, 3, 3, 2]);
+        assert_eq!(at(2, 5), [0, 0, 1, 1, 0, 0, 1, 1, 0, 0, 1, 1]);
+        assert_eq!(at(1, 3), [0; 7]);
     }
 
     #[test]
