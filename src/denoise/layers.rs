@@ -1,6 +1,6 @@
 //! Denoised light layers that sum to the denoised picture.
 
-use super::{Cancelled, Quality, denoise};
+use super::{Cancelled, Quality, denoised_by_network, with_noisy_part};
 use crate::photo::{AovPicture, Picture};
 use rayon::prelude::*;
 
@@ -28,8 +28,18 @@ pub fn denoise_layers(
     quality: Quality,
     is_cancelled: &(dyn Fn() -> bool + Sync),
 ) -> Result<DenoisedLayers, Cancelled> {
-    let whole = denoise(picture, aovs, quality, is_cancelled)?;
-    let denoised = layers.iter().map(|layer| denoise(layer, aovs, quality, is_cancelled));
+    let Some(whole) = denoised_by_network(picture, aovs, quality, is_cancelled)? else {
+        return Ok(DenoisedLayers { picture: picture.clone(), layers: layers.to_vec() });
+    };
+    let (whole, noisy_part) = with_noisy_part(whole, picture, aovs);
+    let denoised = layers.iter().map(|layer| {
+        let denoised = denoised_by_network(layer, aovs, quality, is_cancelled)?;
+        let mixed = denoised.map(|mut denoised| {
+            noisy_part.mix(&mut denoised, layer);
+            denoised
+        });
+        Ok(mixed.unwrap_or_else(|| layer.clone()))
+    });
     let mut denoised = denoised.collect::<Result<Vec<_>, _>>()?;
     share_difference(&whole, layers, &mut denoised);
     Ok(DenoisedLayers { picture: whole, layers: denoised })

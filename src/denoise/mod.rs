@@ -2,7 +2,8 @@
 //!
 //! The network is the U-Net of Intel Open Image Denoise (Áfra, <https://www.openimagedenoise.org>) with its weights, in
 //! our own code. `assets/denoiser/README.md` names version and licence of the weights. It is biased: detail that it takes
-//! for noise is lost, and noise that it takes for detail stays. Meters, references and noise estimates therefore never
+//! for noise is lost, and noise that it takes for detail stays. Where the bias is larger than the noise, most of the noisy
+//! picture stays. Meters, references and noise estimates therefore never
 //! read its pixels.
 //!
 //! | file | contents |
@@ -14,6 +15,7 @@
 //! | `simd` | registers of each instruction set |
 //! | `network` | the layers |
 //! | `tiles` | borders, and pictures that are too large for one run |
+//! | `noisy_part` | the noisy picture where the network is biased |
 //! | `layers` | light layers that sum to the denoised picture |
 
 mod convolution;
@@ -21,6 +23,7 @@ mod feature_map;
 mod filter;
 mod layers;
 mod network;
+mod noisy_part;
 mod simd;
 #[cfg(test)]
 mod tests;
@@ -34,6 +37,7 @@ pub use network::Cancelled;
 
 use crate::photo::{AovPicture, Picture};
 use network::Network;
+use noisy_part::NoisyPart;
 use simd::InstructionSet;
 use std::sync::LazyLock;
 use tiles::MirroredPicture;
@@ -82,7 +86,8 @@ impl Quality {
 
 /// Returns the picture without noise, on the current thread pool: the same bits for any number of threads.
 ///
-/// `aovs` are the albedo and normals of the same pixels. Pixels that are no number or negative count as black. The
+/// `aovs` are the albedo and normals of the same pixels, and their variance, where it is known: more than noise explains
+/// is not changed ([`noisy_part`]). Pixels that are no number or negative count as black. The
 /// picture is returned as it is if the sizes differ, and if it is black: the network would see light in it.
 ///
 /// # Errors
@@ -93,10 +98,29 @@ pub fn denoise(
     quality: Quality,
     is_cancelled: &(dyn Fn() -> bool + Sync),
 ) -> Result<Picture, Cancelled> {
+    let denoised = denoised_by_network(picture, aovs, quality, is_cancelled)?;
+    Ok(denoised.map_or_else(|| picture.clone(), |denoised| with_noisy_part(denoised, picture, aovs).0))
+}
+
+/// Returns the picture as the network denoises it; none where it returns it as it is.
+///
+/// # Errors
+/// Once `is_cancelled` returns true.
+fn denoised_by_network(
+    picture: &Picture,
+    aovs: &AovPicture,
+    quality: Quality,
+    is_cancelled: &(dyn Fn() -> bool + Sync),
+) -> Result<Option<Picture>, Cancelled> {
     let is_black = picture.rgb.as_flattened().iter().all(|value| value.is_nan() || *value <= 0.0);
     let network = quality.network().filter(|_| !is_black);
-    let Some((network, mirrored)) = network.zip(MirroredPicture::new(picture, aovs, MARGIN)) else {
-        return Ok(picture.clone());
-    };
-    tiles::denoise(network, mirrored, tiles::MAX_PIXELS, is_cancelled)
+    let Some((network, mirrored)) = network.zip(MirroredPicture::new(picture, aovs, MARGIN)) else { return Ok(None) };
+    tiles::denoise(network, mirrored, tiles::MAX_PIXELS, is_cancelled).map(Some)
+}
+
+/// Returns the denoised picture with the part of the noisy one that it keeps, and this part.
+fn with_noisy_part(mut denoised: Picture, noisy: &Picture, aovs: &AovPicture) -> (Picture, NoisyPart) {
+    let part = NoisyPart::new(noisy, &denoised, aovs);
+    part.mix(&mut denoised, noisy);
+    (denoised, part)
 }

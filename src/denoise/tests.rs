@@ -225,6 +225,26 @@ fn denoised_layers_sum_to_the_denoised_picture() {
 }
 
 #[test]
+fn a_picture_without_noise_stays_as_it_is_and_so_do_its_layers() {
+    let (picture, mut aovs) = disc(61, 45);
+    let scaled = |part: f32| {
+        let rgb = picture.rgb.iter().map(|rgb| rgb.map(|value| value * part)).collect();
+        Picture { rgb, ..picture.clone() }
+    };
+    let layers = [scaled(0.25), scaled(0.75)];
+    aovs.relative_variance.fill(0.0);
+    let denoised = denoise_layers(&picture, &layers, &aovs, Quality::Fast, &never).unwrap();
+    assert_eq!(denoised.picture, picture);
+    for (denoised, layer) in denoised.layers.iter().zip(&layers) {
+        let values = denoised.rgb.iter().flatten().zip(layer.rgb.iter().flatten());
+        values.for_each(|(a, b)| assert!((a - b).abs() <= 1e-6 * b, "{a}, not {b}"));
+    }
+    // Where nothing is known of the noise, the network decides
+    aovs.relative_variance.fill(f32::INFINITY);
+    assert_ne!(denoise(&picture, &aovs, Quality::Fast, &never), Ok(picture));
+}
+
+#[test]
 fn the_weights_in_the_program_are_whole() {
     for (quality, weights) in [(Quality::Best, BEST_WEIGHTS), (Quality::Fast, FAST_WEIGHTS)] {
         assert!(quality.network().is_some());

@@ -2,7 +2,7 @@
 
 use super::picture::resized;
 
-/// Albedo, normal, depth and object of every pixel, rows from the top.
+/// Albedo, normal, depth, object and noise of every pixel, rows from the top.
 #[derive(Clone, Debug, PartialEq, Default)]
 pub struct AovPicture {
     /// Width, pixels.
@@ -18,6 +18,8 @@ pub struct AovPicture {
     pub depth_m: Vec<f32>,
     /// Object: [`AovPicture::NO_OBJECT`], [`AovPicture::ROOM`] or an [`AovPicture::object_id`].
     pub object_id: Vec<u32>,
+    /// Estimated variance of the picture's luminance over the square of that; infinite where it is not known.
+    pub relative_variance: Vec<f32>,
 }
 
 impl AovPicture {
@@ -36,6 +38,7 @@ impl AovPicture {
             normal: vec![[0.0; 3]; pixels],
             depth_m: vec![f32::INFINITY; pixels],
             object_id: vec![Self::NO_OBJECT; pixels],
+            relative_variance: vec![f32::INFINITY; pixels],
         }
     }
 
@@ -49,6 +52,7 @@ impl AovPicture {
             normal: resized(&self.normal, from, to),
             depth_m: resized(&self.depth_m, from, to),
             object_id: resized(&self.object_id, from, to),
+            relative_variance: resized(&self.relative_variance, from, to),
         }
     }
 

@@ -2,7 +2,7 @@
 //! depend on how its samples were divided.
 
 use super::exact_sum::ExactSum;
-use super::film::{Film, Layer, NonFiniteReport, TILE};
+use super::film::{Film, Layer, MIN_ESTIMATE_SPP, NonFiniteReport, TILE};
 use crate::color::luminance;
 use crate::photo::{AovPicture, LazyPicture, Picture};
 use crate::raytrace::settings::Settings;
@@ -169,6 +169,17 @@ impl FilmPart {
         let mean = |sums: &[PixelSum]| -> Vec<[f32; 3]> {
             sums.iter().map(|sum| (value(*sum) * self.per_sample()).as_vec3().to_array()).collect()
         };
+        let relative_variance = |pixel: usize| {
+            let (mean, variance) = self.mean_and_variance(pixel);
+            let is_known = self.samples >= MIN_ESTIMATE_SPP;
+            if !is_known {
+                f32::INFINITY
+            } else if variance > 0.0 {
+                (variance / (mean * mean)) as f32
+            } else {
+                0.0
+            }
+        };
         Some(AovPicture {
             width: self.width,
             height: self.height,
@@ -176,6 +187,7 @@ impl FilmPart {
             normal: mean(&aovs.normal),
             depth_m: aovs.depth_m.clone(),
             object_id: aovs.object_id.clone(),
+            relative_variance: (0..self.squares.len()).map(relative_variance).collect(),
         })
     }
 
@@ -183,20 +195,23 @@ impl FilmPart {
     /// standard errors over the mean luminance. Samples of a pixel are stratified together, so that its error is
     /// smaller: this is an upper bound. None before there are two samples, and for a black picture.
     pub fn noise_stops(&self) -> Option<f64> {
-        let samples = f64::from(self.samples);
-        let mean_of = |pixel: usize| -> f64 {
-            let rgb: DVec3 = self.layers.iter().map(|layer| self.mean(layer, pixel)).sum();
-            f64::from(luminance(rgb.as_vec3()))
-        };
         let (mut mean, mut variance) = (0.0, 0.0);
-        for (pixel, square) in self.squares.iter().enumerate() {
-            let own = mean_of(pixel);
-            mean += own;
-            variance += (square.value() / samples - own * own).max(0.0) / (samples - 1.0);
+        for pixel in 0..self.squares.len() {
+            let own = self.mean_and_variance(pixel);
+            (mean, variance) = (mean + own.0, variance + own.1);
         }
         let pixels = self.squares.len() as f64;
         let relative = (variance / pixels).sqrt() / (mean / pixels);
         (self.samples > 1 && relative.is_finite()).then(|| (1.0 + relative).log2())
+    }
+
+    /// Returns the mean luminance of a pixel, and the variance of that by the scatter of the samples; no number before
+    /// there are two.
+    fn mean_and_variance(&self, pixel: usize) -> (f64, f64) {
+        let samples = f64::from(self.samples);
+        let rgb: DVec3 = self.layers.iter().map(|layer| self.mean(layer, pixel)).sum();
+        let mean = f64::from(luminance(rgb.as_vec3()));
+        (mean, (self.squares[pixel].value() / samples - mean * mean).max(0.0) / (samples - 1.0))
     }
 
     fn per_sample(&self) -> f64 {

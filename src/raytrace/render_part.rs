@@ -57,7 +57,7 @@ pub fn render_part(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::photo::Picture;
+    use crate::photo::{AovPicture, Picture};
     use crate::raytrace::{Film, prepare, render};
     use crate::scene::{Assets, Emitter, Light, Material, Object, Output, Room, Shape};
     use glam::Vec3;
@@ -116,6 +116,12 @@ mod tests {
         // One render adds the same samples as floats of 24 bits, several contributions a sample
         let difference = relative_difference(&whole.develop(), &film.develop(&scene));
         assert!(difference < 13.0 * 8.0 * f32::EPSILON, "{difference}");
+        // The denoiser knows the noise of both; the scatter in a part does not see how samples are stratified
+        let noise = |aovs: AovPicture| aovs.relative_variance.iter().map(|variance| variance.sqrt()).sum::<f32>();
+        let ratio = noise(whole.develop_aovs().unwrap()) / noise(film.denoiser_aovs().unwrap());
+        assert!((1.0..2.0).contains(&ratio), "{ratio}");
+        let few = part(&prepared, &scene, &settings, 0..2).develop_aovs().unwrap();
+        assert!(few.relative_variance.iter().all(|variance| variance.is_infinite()));
         assert_ne!(part(&prepared, &scene, &settings, 0..6).develop(), whole.develop());
         let (own, films) = (whole.develop_aovs().unwrap(), film.aovs().unwrap());
         assert_eq!((own.depth_m, own.object_id), (films.depth_m, films.object_id));

@@ -105,7 +105,8 @@ fn aovs(part: &ReadExrPart) -> Result<Option<AovPicture>, String> {
     };
     let albedo = vectors(part, ["albedo.R", "albedo.G", "albedo.B"]).ok_or("the albedo is missing")?;
     let normal = vectors(part, ["normal.X", "normal.Y", "normal.Z"]).ok_or("the normals are missing")?;
-    Ok(Some(AovPicture { width, height, albedo, normal, depth_m: depth_m.clone(), object_id: object_id.clone() }))
+    let (depth_m, object_id) = (depth_m.clone(), object_id.clone());
+    Ok(Some(AovPicture { albedo, normal, depth_m, object_id, ..AovPicture::new(width, height) }))
 }
 
 /// Returns the vectors of three channels, rows from the top; none if one is missing.

@@ -247,6 +247,7 @@ impl Film {
                 let (x, y) = tile.position(pixel);
                 let at = y as usize * self.width as usize + x as usize;
                 write(aovs, pixel, tile.per_sample(), &mut picture, at);
+                picture.relative_variance[at] = tile.blocks.relative_variance(pixel);
             }
         }
         Some(picture)
