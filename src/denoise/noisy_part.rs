@@ -5,6 +5,10 @@
 //! Q = V + b, where b is the square of the bias, if the denoised picture has no noise of its own. Of all mixtures of the
 //! two pictures, that with the part b / (V + b) of the noisy one has the least error. With more and more samples V
 //! vanishes and with it the bias.
+//!
+//! A single bright sample has a large difference, and its variance may be small by chance. So a pixel has at least the
+//! relative variance of its neighbourhood, and both halves of the neighbouring pixels must tell of bias: the lower one
+//! of their estimates counts.
 
 use crate::color::luminance;
 use crate::photo::{AovPicture, Picture};
@@ -13,9 +17,8 @@ use rayon::prelude::*;
 
 /// Pixels around a pixel, to each side, whose variance and difference count, less and less.
 const RADIUS: usize = 5;
-/// Differences up to so many variances count as noise: estimates of both scatter, and so would the picture if it kept
-/// noise by chance.
-const EXPLAINED: f32 = 1.5;
+/// What is not known, or no number, counts as noise.
+const UNKNOWN: [f32; 3] = [f32::INFINITY, 1.0, 0.0];
 
 /// The part of the noisy picture in each pixel, 0 to 1.
 #[derive(Debug)]
@@ -32,14 +35,30 @@ impl NoisyPart {
         if sizes != [width * height; 3] || aovs.relative_variance.iter().all(|variance| variance.is_infinite()) {
             return NoisyPart { parts: Vec::new() };
         }
+        // Variance and square of the luminance, and square of the difference
         let estimate = |((noisy, denoised), relative): ((&[f32; 3], &[f32; 3]), &f32)| {
             let [noisy, denoised] = [noisy, denoised].map(|rgb| luminance(Vec3::from(*rgb)));
-            let variance = if relative.is_finite() { relative * noisy * noisy } else { f32::INFINITY };
-            [variance, (denoised - noisy).powi(2)]
+            let (variance, square) = (relative * noisy * noisy, (denoised - noisy).powi(2));
+            if variance.is_finite() && square.is_finite() { [variance, noisy * noisy, square] } else { UNKNOWN }
         };
         let pixels = noisy.rgb.par_iter().zip(&denoised.rgb).zip(&aovs.relative_variance);
-        let around = smoothed(&pixels.map(estimate).collect::<Vec<_>>(), width, height);
-        NoisyPart { parts: around.par_iter().map(|[variance, square]| part(square / variance)).collect() }
+        let estimates: Vec<_> = pixels.map(estimate).collect();
+
+        // Variance and difference in each half of the neighbours
+        let around = smoothed(&estimates, width, height);
+        let in_halves = |(pixel, (estimate, around)): (usize, (&[f32; 3], &[f32; 3]))| {
+            let [variance, luminance_square, square] = *estimate;
+            let least_variance = around[0] / around[1] * luminance_square;
+            let values = [variance.max(least_variance), square];
+            // Lines along rows, columns and diagonals have pixels of both halves
+            let (x, y) = (pixel % width, pixel / width);
+            if (x + y / 2) % 2 == 0 { [values[0], values[1], 0.0, 0.0] } else { [0.0, 0.0, values[0], values[1]] }
+        };
+        let halves: Vec<_> = estimates.par_iter().zip(&around).enumerate().map(in_halves).collect();
+        let part_of = |[variance, square, other_variance, other_square]: &[f32; 4]| {
+            part((square / variance).min(other_square / other_variance))
+        };
+        NoisyPart { parts: smoothed(&halves, width, height).par_iter().map(part_of).collect() }
     }
 
     /// Mixes the noisy picture into the denoised one. Layers of a picture have its parts.
@@ -53,25 +72,36 @@ impl NoisyPart {
 
 /// Returns the part of the noisy picture where the mean square of the differences is so many variances. None for NaN.
 fn part(ratio: f32) -> f32 {
-    let squared_bias = (ratio - EXPLAINED).max(0.0);
+    let squared_bias = (ratio - 1.0).max(0.0);
     1.0 - 1.0 / (1.0 + squared_bias)
 }
 
 /// Returns weighted means around each pixel, over rows and then over columns, with weights that fall linearly.
-fn smoothed(values: &[[f32; 2]], width: usize, height: usize) -> Vec<[f32; 2]> {
-    let mean = |length: usize, at: usize, value: &dyn Fn(usize) -> [f32; 2]| {
-        let (mut sums, mut weights) = ([0.0; 2], 0.0);
-        for index in at.saturating_sub(RADIUS)..(at + RADIUS + 1).min(length) {
-            let weight = (RADIUS + 1 - index.abs_diff(at)) as f32;
-            let value = value(index);
-            sums = [0, 1].map(|i| sums[i] + weight * value[i]);
-            weights += weight;
-        }
-        sums.map(|sum| sum / weights)
+fn smoothed<const N: usize>(values: &[[f32; N]], width: usize, height: usize) -> Vec<[f32; N]> {
+    let add = |sum: &mut [f32; N], value: &[f32; N], weight: f32| {
+        sum.iter_mut().zip(value).for_each(|(sum, value)| *sum += weight * value);
     };
-    let pixels = || (0..width * height).into_par_iter().map(|pixel| (pixel % width, pixel / width));
-    let rows: Vec<_> = pixels().map(|(x, y)| mean(width, x, &|x| values[y * width + x])).collect();
-    pixels().map(|(x, y)| mean(height, y, &|y| rows[y * width + x])).collect()
+    let mut rows = vec![[0.0; N]; values.len()];
+    rows.par_chunks_mut(width).zip(values.par_chunks(width)).for_each(|(sums, row)| {
+        for (x, sum) in sums.iter_mut().enumerate() {
+            weights_around(x, width).for_each(|(x, weight)| add(sum, &row[x], weight));
+        }
+    });
+    let mut means = vec![[0.0; N]; values.len()];
+    means.par_chunks_mut(width).enumerate().for_each(|(y, sums)| {
+        for (y, weight) in weights_around(y, height) {
+            sums.iter_mut().zip(&rows[y * width..]).for_each(|(sum, value)| add(sum, value, weight));
+        }
+    });
+    means
+}
+
+/// Returns the positions around one on an axis of `length` pixels, with weights that sum to one.
+fn weights_around(position: usize, length: usize) -> impl Iterator<Item = (usize, f32)> {
+    let range = position.saturating_sub(RADIUS)..(position + RADIUS + 1).min(length);
+    let weight = move |index: usize| (RADIUS + 1 - index.abs_diff(position)) as f32;
+    let sum: f32 = range.clone().map(weight).sum();
+    range.map(move |index| (index, weight(index) / sum))
 }
 
 #[cfg(test)]
@@ -97,7 +127,7 @@ mod tests {
     #[test]
     fn differences_that_noise_explains_leave_the_denoised_picture_as_it_is() {
         let denoised = picture(20, 10, |_| 1.0);
-        let noisy = picture(20, 10, |pixel| if pixel % 2 == 0 { 1.1 } else { 0.9 });
+        let noisy = picture(20, 10, |pixel| if pixel % 2 == 0 { 1.09 } else { 0.91 });
         assert_eq!(mixture(&noisy, &denoised, &with_variance(&noisy, 0.01)), denoised);
         // Without a known variance all of it counts as noise
         assert_eq!(mixture(&noisy, &denoised, &with_variance(&noisy, f32::INFINITY)), denoised);
@@ -106,15 +136,37 @@ mod tests {
 
     #[test]
     fn bias_is_mixed_with_noise_for_the_least_error() {
-        // The denoised picture is 0.3 too dark, the noisy one has a standard error of 0.1: nine variances, of which one
-        // and a half count as noise
+        // The denoised picture is 0.3 too dark, the noisy one has a standard error of 0.1: nine variances, one of noise
         let denoised = picture(20, 10, |_| 0.7);
         let noisy = picture(20, 10, |_| 1.0);
         let mixed = mixture(&noisy, &denoised, &with_variance(&noisy, 0.01));
-        let expected = 0.7 + 0.3 * 7.5 / 8.5;
+        let expected = 0.7 + 0.3 * 8.0 / 9.0;
         assert!(mixed.rgb.iter().flatten().all(|value| (value - expected).abs() < 1e-4), "{:?}", mixed.rgb[0]);
         // Without noise the noisy picture is the true one
         assert_eq!(mixture(&noisy, &denoised, &with_variance(&noisy, 0.0)), noisy);
+    }
+
+    #[test]
+    fn a_single_bright_sample_is_no_bias() {
+        // Both blocks of its samples happen to be the same
+        let denoised = picture(21, 21, |_| 1.0);
+        let (middle, mut noisy) = (10 * 21 + 10, denoised.clone());
+        noisy.rgb[middle] = [20.0; 3];
+        let mut aovs = with_variance(&noisy, 0.01);
+        aovs.relative_variance[middle] = 0.0;
+        assert_eq!(mixture(&noisy, &denoised, &aovs), denoised);
+    }
+
+    #[test]
+    fn lines_that_the_network_has_lost_come_back() {
+        let denoised = picture(31, 31, |_| 1.0);
+        let is_line: [fn(u32, u32) -> bool; 4] = [|x, _| x == 15, |_, y| y == 15, |x, y| x == y, |x, y| x + y == 30];
+        for is_line in is_line {
+            let noisy = picture(31, 31, |pixel| if is_line(pixel % 31, pixel / 31) { 2.0 } else { 1.0 });
+            let mixed = mixture(&noisy, &denoised, &with_variance(&noisy, 1e-4));
+            let on_line = (0..961).filter(|pixel| is_line(pixel % 31, pixel / 31));
+            assert!(on_line.into_iter().all(|pixel| mixed.rgb[pixel as usize][0] > 1.9));
+        }
     }
 
     #[test]

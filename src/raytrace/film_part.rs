@@ -2,7 +2,7 @@
 //! depend on how its samples were divided.
 
 use super::exact_sum::ExactSum;
-use super::film::{Film, Layer, MIN_ESTIMATE_SPP, NonFiniteReport, TILE};
+use super::film::{Film, Layer, MIN_VARIANCE_SPP, NonFiniteReport, TILE};
 use crate::color::luminance;
 use crate::photo::{AovPicture, LazyPicture, Picture};
 use crate::raytrace::settings::Settings;
@@ -171,7 +171,7 @@ impl FilmPart {
         };
         let relative_variance = |pixel: usize| {
             let (mean, variance) = self.mean_and_variance(pixel);
-            let is_known = self.samples >= MIN_ESTIMATE_SPP;
+            let is_known = self.samples >= MIN_VARIANCE_SPP;
             if !is_known {
                 f32::INFINITY
             } else if variance > 0.0 {

@@ -13,7 +13,7 @@ mod tile;
 use aov::AovTile;
 pub use gate::{NonFiniteGate, NonFiniteReport};
 pub use layer::{Layer, MAX_LIGHT_LAYERS, assign_layers, share_layers};
-pub use noise::{MIN_ESTIMATE_SPP, MIN_ROUGH_ESTIMATE_SPP, SampleBlocks};
+pub use noise::{MIN_ESTIMATE_SPP, MIN_ROUGH_ESTIMATE_SPP, MIN_VARIANCE_SPP, SampleBlocks};
 pub use sums::LayerSums;
 pub use tile::{FilmTile, TILE};
 

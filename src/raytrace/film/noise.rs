@@ -28,6 +28,8 @@ pub const MIN_ESTIMATE_SPP: u32 = 4;
 /// Samples per pixel from which the noise is estimated roughly, by one difference: 0.81 to 1.23 of the error on the
 /// shipped studios.
 pub const MIN_ROUGH_ESTIMATE_SPP: u32 = 2;
+/// Samples per pixel from which the variance of a single pixel is estimated.
+pub const MIN_VARIANCE_SPP: u32 = 8;
 /// Logarithm of n V(n) over the difference, before a second difference tells how they fall: the mean of the shipped
 /// studios.
 const FIRST_LOG_RATIO: f64 = -0.30;
@@ -146,10 +148,10 @@ impl SampleBlocks {
     }
 
     /// Estimates the variance of a pixel's mean over the square of that, by the difference of the two blocks. It is too
-    /// large, as samples are stratified. Infinite before there are [`MIN_ESTIMATE_SPP`] samples, in both blocks.
+    /// large, as samples are stratified. Infinite before there are [`MIN_VARIANCE_SPP`] samples, in both blocks.
     pub fn relative_variance(&self, pixel: usize) -> f32 {
         let [p, q] = self.samples.map(|samples| samples as f32);
-        if self.samples() < MIN_ESTIMATE_SPP || p == 0.0 || q == 0.0 {
+        if self.samples() < MIN_VARIANCE_SPP || p == 0.0 || q == 0.0 {
             return f32::INFINITY;
         }
         let [before, since] = [self.sums[0][pixel], self.sums[1][pixel]];
@@ -296,7 +298,7 @@ mod tests {
         let mut blocks = SampleBlocks::new(PIXELS);
         assert_eq!(blocks.relative_variance(0), f32::INFINITY);
         for pass in [1, 1, 2, 4, 8, 3] {
-            assert_eq!(blocks.relative_variance(0).is_infinite(), blocks.samples() < MIN_ESTIMATE_SPP);
+            assert_eq!(blocks.relative_variance(0).is_infinite(), blocks.samples() < MIN_VARIANCE_SPP);
             blocks.begin_pass();
             (0..PIXELS * pass).for_each(|sample| blocks.add(sample % PIXELS, 1.0 + rng.uniform()));
             blocks.finish_pass(pass as u32);
