@@ -17,7 +17,7 @@ pub struct DenoisedLayers {
 ///
 /// The network is not linear: denoised layers do not sum to the denoised picture, which is the better estimate, because
 /// it shows all edges. In each pixel and channel the difference is therefore divided among the layers in proportion to
-/// their denoised values.
+/// their denoised values. All layers keep the same part of the noisy ones as the picture does.
 ///
 /// # Errors
 /// Once `is_cancelled` returns true.

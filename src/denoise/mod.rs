@@ -2,9 +2,8 @@
 //!
 //! The network is the U-Net of Intel Open Image Denoise (Áfra, <https://www.openimagedenoise.org>) with its weights, in
 //! our own code. `assets/denoiser/README.md` names version and licence of the weights. It is biased: detail that it takes
-//! for noise is lost, and noise that it takes for detail stays. Where the bias is larger than the noise, most of the noisy
-//! picture stays. Meters, references and noise estimates therefore never
-//! read its pixels.
+//! for noise is lost, and noise that it takes for detail stays. Where its bias is larger than the noise, most of the noisy
+//! picture is kept. Meters, references and noise estimates never read its pixels.
 //!
 //! | file | contents |
 //! |---|---|
@@ -86,9 +85,9 @@ impl Quality {
 
 /// Returns the picture without noise, on the current thread pool: the same bits for any number of threads.
 ///
-/// `aovs` are the albedo and normals of the same pixels, and their variance, where it is known: more than noise explains
-/// is not changed ([`noisy_part`]). Pixels that are no number or negative count as black. The
-/// picture is returned as it is if the sizes differ, and if it is black: the network would see light in it.
+/// `aovs` are the albedo and normals of the same pixels. Where their variance is known, a part of the noisy picture stays if
+/// the network changes more than the noise explains ([`noisy_part`]). Pixels that are no number or negative count as black.
+/// The picture is returned as it is if the sizes differ, and if it is black: the network would see light in it.
 ///
 /// # Errors
 /// Once `is_cancelled` returns true.

@@ -17,7 +17,7 @@ use rayon::prelude::*;
 
 /// Pixels around a pixel, to each side, whose variance and difference count, less and less.
 const RADIUS: usize = 5;
-/// What is not known, or no number, counts as noise.
+/// The estimates of a pixel of which nothing is known, or that is no number: all of it counts as noise.
 const UNKNOWN: [f32; 3] = [f32::INFINITY, 1.0, 0.0];
 
 /// The part of the noisy picture in each pixel, 0 to 1.
@@ -35,7 +35,7 @@ impl NoisyPart {
         if sizes != [width * height; 3] || aovs.relative_variance.iter().all(|variance| variance.is_infinite()) {
             return NoisyPart { parts: Vec::new() };
         }
-        // Variance and square of the luminance, and square of the difference
+        // Estimate the variance, the square of the luminance and the square of the difference
         let estimate = |((noisy, denoised), relative): ((&[f32; 3], &[f32; 3]), &f32)| {
             let [noisy, denoised] = [noisy, denoised].map(|rgb| luminance(Vec3::from(*rgb)));
             let (variance, square) = (relative * noisy * noisy, (denoised - noisy).powi(2));
@@ -44,7 +44,7 @@ impl NoisyPart {
         let pixels = noisy.rgb.par_iter().zip(&denoised.rgb).zip(&aovs.relative_variance);
         let estimates: Vec<_> = pixels.map(estimate).collect();
 
-        // Variance and difference in each half of the neighbours
+        // Sort variance and difference by the halves of the neighbouring pixels
         let around = smoothed(&estimates, width, height);
         let in_halves = |(pixel, (estimate, around)): (usize, (&[f32; 3], &[f32; 3]))| {
             let [variance, luminance_square, square] = *estimate;
@@ -70,7 +70,7 @@ impl NoisyPart {
     }
 }
 
-/// Returns the part of the noisy picture where the mean square of the differences is so many variances. None for NaN.
+/// Returns the part of the noisy picture where the mean square of the differences is so many variances; 0 for NaN.
 fn part(ratio: f32) -> f32 {
     let squared_bias = (ratio - 1.0).max(0.0);
     1.0 - 1.0 / (1.0 + squared_bias)
