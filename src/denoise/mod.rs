@@ -85,9 +85,10 @@ impl Quality {
 
 /// Returns the picture without noise, on the current thread pool: the same bits for any number of threads.
 ///
-/// `aovs` are the albedo and normals of the same pixels. Where their variance is known, a part of the noisy picture stays if
-/// the network changes more than the noise explains ([`noisy_part`]). Pixels that are no number or negative count as black.
-/// The picture is returned as it is if the sizes differ, and if it is black: the network would see light in it.
+/// `aovs` are the albedo and normals of the same pixels. Where their variance is known, a part of the noisy picture
+/// stays if the network changes more than the noise explains ([`noisy_part`]). Pixels that are no number or negative
+/// count as black. The picture is returned as it is if the sizes differ, and if it is black: the network would see light
+/// in it.
 ///
 /// # Errors
 /// Once `is_cancelled` returns true.

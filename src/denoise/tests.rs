@@ -118,7 +118,9 @@ fn a_constant_picture_stays_constant() {
         let ratio = |x: u32, y: u32| std::array::from_fn::<f32, 3, _>(|i| denoised.at(x, y)[i] / rgb[i]);
         // Without a margin single pixels at the borders are off by up to two thirds
         for (x, y) in (0..96).flat_map(|y| (0..96).map(move |x| (x, y))) {
-            assert!(ratio(x, y).iter().all(|ratio| (ratio - 1.0).abs() < 6e-3), "{:?}", ratio(x, y));
+            let is_inside = (32..64).contains(&x) && (32..64).contains(&y);
+            let most = if is_inside { 4e-3 } else { 6e-3 };
+            assert!(ratio(x, y).iter().all(|ratio| (ratio - 1.0).abs() < most), "{:?}", ratio(x, y));
         }
         let all = (0..96).flat_map(|y| (0..96).map(move |x| ratio(x, y)[1]));
         assert!((all.sum::<f32>() / (96.0 * 96.0) - 1.0).abs() < 2e-3);

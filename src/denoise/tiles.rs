@@ -1,4 +1,5 @@
-//! A picture's way through the network: mirrored beyond its borders, in one run, or in tiles where memory would be short.
+//! A picture's way through the network: mirrored beyond its borders, in one run, or in tiles where memory would be
+//! short.
 //!
 //! A run takes some 250 bytes a pixel. Tiles overlap by as much as the network sees around a pixel, so that their pixels
 //! are those of one run, bit for bit.
@@ -105,8 +106,8 @@ impl<'a> MirroredPicture<'a> {
         (pixels > 0 && is_whole).then_some(MirroredPicture { picture, aovs, margin })
     }
 
-    /// Returns the input of the network for some pixels, which count from the start of the margin: encoded colour, albedo,
-    /// normal from 0 to 1. It is zero where the aligned size is larger.
+    /// Returns the input of the network for some pixels, which count from the start of the margin: encoded colour,
+    /// albedo, normal from 0 to 1. It is zero where the aligned size is larger.
     fn network_input(&self, scale: f32, columns: &Range<usize>, rows: &Range<usize>) -> FeatureMap {
         let MirroredPicture { picture, aovs, .. } = *self;
         let aligned = |range: &Range<usize>| range.len().next_multiple_of(ALIGNMENT);
@@ -129,7 +130,8 @@ impl<'a> MirroredPicture<'a> {
         input
     }
 
-    /// Returns the pixel, on an axis of `length` pixels, that is shown so far from the start of the margin.
+    /// Returns the index of the pixel, of `length` along an axis, that the mirrored picture has at a position, which
+    /// counts from the start of the margin.
     fn pixel_at(&self, position: usize, length: usize) -> usize {
         // Mirrored in both borders, the picture repeats itself after twice its length
         let period = 2 * length;

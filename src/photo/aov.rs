@@ -18,7 +18,8 @@ pub struct AovPicture {
     pub depth_m: Vec<f32>,
     /// Object: [`AovPicture::NO_OBJECT`], [`AovPicture::ROOM`] or an [`AovPicture::object_id`].
     pub object_id: Vec<u32>,
-    /// Estimated variance of the picture's luminance over the square of that; infinite where it is not known.
+    /// Estimated variance of the pixel's mean luminance, divided by the square of the mean; infinite where it is not
+    /// known.
     pub relative_variance: Vec<f32>,
 }
 

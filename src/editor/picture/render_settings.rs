@@ -4,8 +4,8 @@ use crate::jobs::{Estimate, Forecast};
 use crate::raytrace::{Method, Settings};
 use crate::scene::Camera;
 
-/// Part of the noise that the denoiser leaves, at least: a third to a tenth by the README's table, apart from lamps in chrome
-/// and hair close up.
+/// Part of the noise that the denoiser leaves, at least: a third to a tenth by the README's table, apart from lamps in
+/// chrome and hair close up.
 const DENOISED_NOISE: f32 = 1.0 / 3.0;
 
 /// The largest number of samples per pixel that can be chosen.

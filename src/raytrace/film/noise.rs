@@ -147,8 +147,8 @@ impl SampleBlocks {
         sum / self.sums[0].len() as f32
     }
 
-    /// Estimates the variance of a pixel's mean over the square of that, by the difference of the two blocks. It is too
-    /// large, as samples are stratified. Infinite before there are [`MIN_VARIANCE_SPP`] samples, in both blocks.
+    /// Estimates the variance of a pixel's mean, divided by the square of the mean, by the difference of the two blocks.
+    /// The estimate is too large, as samples are stratified. Infinite before there are [`MIN_VARIANCE_SPP`] samples, in both blocks.
     pub fn relative_variance(&self, pixel: usize) -> f32 {
         let [p, q] = self.samples.map(|samples| samples as f32);
         if self.samples() < MIN_VARIANCE_SPP || p == 0.0 || q == 0.0 {
