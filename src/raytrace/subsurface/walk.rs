@@ -7,7 +7,7 @@
 //! weight on a flat surface, and classical ones bound it where the body is thin or curved.
 //!
 //! The same walk is followed under the tangent plane of its entry, without rays. Its expected weight is known, which
-//! makes it a control variate: see `path`.
+//! makes it a control variate: see `path`. A walk that the body stops where it cannot leave has that weight, too.
 
 use super::medium::Medium;
 use crate::math::{Ray, orthonormal_basis, warp};
@@ -58,7 +58,7 @@ pub struct WalkEnd {
     pub surface: SurfaceInteraction,
     /// Contribution over density, for an entry with a cosine distribution.
     pub weight: Vec3,
-    /// True if the walk did not find the surface and ends at its entry.
+    /// True if the walk cannot leave by the body's soft surface, and ends at its entry.
     pub is_entry: bool,
 }
 
@@ -76,19 +76,23 @@ pub struct WalkPair {
 /// The state of a pair of walks.
 #[derive(Clone, Copy, Debug, Default)]
 struct Ends {
-    body: Option<WalkEnd>,
+    body: Option<BodyEnd>,
     flat_weight: Option<Vec3>,
     rays: u32,
+}
+
+/// The end of the walk in the body.
+#[derive(Clone, Copy, Debug)]
+enum BodyEnd {
+    /// At its soft surface, or after the last step.
+    Light(WalkEnd),
+    /// At a surface by which no light leaves.
+    Stopped,
 }
 
 impl Ends {
     fn is_complete(&self) -> bool {
         self.body.is_some() && self.flat_weight.is_some()
-    }
-
-    /// Returns the pair where no walk goes on: light that has not left is absorbed.
-    fn finish(self) -> WalkPair {
-        WalkPair { end: self.body, flat_weight: self.flat_weight.unwrap_or(Vec3::ZERO), rays: self.rays }
     }
 }
 
@@ -154,8 +158,8 @@ impl KernelTask for Walk<'_> {
         let Medium { diffuse_albedo, extinction, albedo, decay, guide } = *self.medium;
         let mut ends = Ends::default();
         if 1.0 / extinction.max_element() < MIN_FREE_PATH * self.entry.position_error.max_element() {
-            (ends.body, ends.flat_weight) = (Some(self.end_at_entry(diffuse_albedo)), Some(diffuse_albedo));
-            return ends.finish();
+            (ends.body, ends.flat_weight) = (Some(BodyEnd::Stopped), Some(diffuse_albedo));
+            return self.finish(ends);
         }
 
         // Sample the technique, and a direction of entry about the geometric normal
@@ -193,7 +197,7 @@ impl KernelTask for Walk<'_> {
                 ends.flat_weight = Some(weights.after_flight(extinction, stretched, -height / local.z).weight());
             }
             if ends.is_complete() {
-                return ends.finish();
+                return self.finish(ends);
             }
 
             // Scatter
@@ -214,31 +218,43 @@ impl KernelTask for Walk<'_> {
             // Play Russian roulette
             let largest = weights.contribution.max_element();
             if largest.is_nan() || largest <= self.numbers.next() * threshold {
-                return ends.finish();
+                return self.finish(ends);
             }
             if largest < threshold {
                 weights.contribution *= threshold / largest;
             }
             u_distance = self.numbers.next();
         }
-        ends.body.get_or_insert(self.end_at_entry(weights.contribution));
+        ends.body.get_or_insert(BodyEnd::Light(self.end_at_entry(weights.contribution)));
         ends.flat_weight.get_or_insert(weights.contribution);
-        ends.finish()
+        self.finish(ends)
     }
 }
 
 impl Walk<'_> {
     /// Returns the end of a walk whose ray hits the object.
     #[inline(always)]
-    fn end_at(&self, hit: &TriangleHit, direction: Vec3, weight: Vec3) -> WalkEnd {
+    fn end_at(&self, hit: &TriangleHit, direction: Vec3, weight: Vec3) -> BodyEnd {
         let surface = self.instance.surface(hit);
         let is_soft = self.materials[surface.material as usize].extinction_per_m().is_some();
         let leaves = is_soft && direction.dot(surface.geometric_normal) > 0.0;
-        if leaves { WalkEnd { surface, weight, is_entry: false } } else { self.end_at_entry(weight) }
+        if leaves { BodyEnd::Light(WalkEnd { surface, weight, is_entry: false }) } else { BodyEnd::Stopped }
     }
 
     #[inline(always)]
     fn end_at_entry(&self, weight: Vec3) -> WalkEnd {
         WalkEnd { surface: *self.entry, weight, is_entry: true }
+    }
+
+    /// Returns the pair where no walk goes on: light that has not left is absorbed. A walk that was stopped has the light
+    /// of the half-space: what was left of its own lacks the absorption of the way that it did not take.
+    #[inline(always)]
+    fn finish(&self, ends: Ends) -> WalkPair {
+        let end = match ends.body {
+            Some(BodyEnd::Light(end)) => Some(end),
+            Some(BodyEnd::Stopped) => ends.flat_weight.map(|weight| self.end_at_entry(weight)),
+            None => None,
+        };
+        WalkPair { end, flat_weight: ends.flat_weight.unwrap_or(Vec3::ZERO), rays: ends.rays }
     }
 }
