@@ -5,6 +5,7 @@
 
 use glam::{Vec2, Vec3};
 use std::collections::HashMap;
+use std::f32::consts::TAU;
 
 /// Offsets of vertices that change the shape of the base mesh.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -65,6 +66,17 @@ impl Mask {
         };
         let row = |y| value(x, y) * (1.0 - right) + value(x + 1, y) * right;
         row(y) * (1.0 - down) + row(y + 1) * down
+    }
+
+    /// Returns the mean strength within a distance of texture coordinates.
+    pub fn mean_around(&self, uv: Vec2, radius: f32) -> f32 {
+        const RADII: [f32; 3] = [0.35, 0.68, 0.94];
+        const TURNS: u16 = 8;
+        let at =
+            |radius: f32, turn: u16| self.at(uv + radius * Vec2::from_angle(TAU * f32::from(turn) / f32::from(TURNS)));
+        // Each ring stands for a third of the disc
+        let rings = RADII.iter().flat_map(|part| (0..TURNS).map(move |turn| at(part * radius, turn)));
+        rings.sum::<f32>() / (RADII.len() as f32 * f32::from(TURNS))
     }
 }
 

@@ -6,6 +6,7 @@ use super::garments::dress;
 use super::gaze::without_gaze;
 use super::hair::{self, HairBody};
 use super::last_results::LastResults;
+use super::materials::LIP_TINT;
 use super::patch::Patch;
 use super::posed_body::PosedBody;
 use super::regions::{Clothes, Edges, Garment};
@@ -27,6 +28,10 @@ const INSIDE_MOUTH: [(&str, u8); 3] = [("helper-upper-teeth", 3), ("helper-lower
 const REGIONS: [(u8, &str); 3] = [(8, "lips"), (9, "fingernails"), (10, "inside-mouth")];
 /// Figures whose clothes and hair are kept: for each some 15 MB. A slider changes the face of one.
 const KEPT_FIGURES: usize = 2;
+/// Distance from the lips over which skin loses their colour, in texture coordinates: 1.6 mm.
+const LIP_FADE: f32 = 1.6 / 1024.0;
+/// Middle of the mouth, metres from between the eyes, and a radius round it that holds the lips and their fading colour.
+const MOUTH: (Vec3, f32) = (Vec3::new(0.0, -0.072, 0.03), 0.05);
 /// Skin reaches this far below the edge of a garment, metres.
 const OVERLAP_M: f32 = 0.03;
 
@@ -41,10 +46,11 @@ pub fn build(figure: &Figure) -> FigureMeshes {
         // The vertices of the coarse mesh are the first ones of the fine mesh: both lie on the limit surface
         let count = quads.positions.len();
         split_skin(data, &mut quads);
+        let lip_strengths = lip_strengths(data, &quads);
         quads.append(&eyes_mesh);
         quads.append(&tears.0);
         let normals = [&normals[..count], &eyes_mesh.normals(), &tears.0.normals()].concat();
-        to_mesh(&quads, &normals, &[&colors[..count], &eye_colors, &tears.1].concat())
+        to_mesh(&quads, &normals, &[&colors[..count], &eye_colors, &tears.1].concat(), &lip_strengths)
     };
     let skin = || {
         let (mut coarse, clothes) =
@@ -105,7 +111,7 @@ fn hair_body<'a>(data: &'a BodyData, figure: &Figure, body: &'a PosedBody) -> Ha
 pub fn with_other_gaze(built: &FigureMeshes, figure: &Figure) -> FigureMeshes {
     let data = BodyData::shipped();
     let (eyes, colors) = both_eyes(PosedBody::new(data, figure).eyeballs(data, figure));
-    let eyes = to_mesh(&eyes, &eyes.normals(), &colors);
+    let eyes = to_mesh(&eyes, &eyes.normals(), &colors, &[]);
     let turned = |mesh: &Mesh| {
         let mut mesh = mesh.clone();
         // The vertices of each part of the eyes are a block
@@ -188,8 +194,25 @@ fn split_skin(data: &BodyData, mesh: &mut QuadMesh) {
     }
 }
 
-/// Splits quads into triangles, by part, with a vertex for each pair of position and texture coordinates.
-fn to_mesh(quads: &QuadMesh, normals: &[Vec3], colors: &[Vec3]) -> Mesh {
+/// Returns how much of the lips' colour the skin at each vertex has: 1 at their edge, 0 where it has faded out.
+fn lip_strengths(data: &BodyData, mesh: &QuadMesh) -> Vec<f32> {
+    let mut strengths = vec![0.0; mesh.positions.len()];
+    let Some(lips) = data.masks.get("lips") else { return strengths };
+    let (middle, radius) = MOUTH;
+    let is_near =
+        |v: u32| mesh.values.get(v as usize).is_some_and(|place| place.distance_squared(middle) < radius * radius);
+    for (quad, uvs) in mesh.quads.iter().zip(&mesh.uvs) {
+        for (&vertex, uv) in quad.iter().zip(uvs).filter(|(vertex, _)| is_near(**vertex)) {
+            // At the edge of the lips, half of the surroundings are lips
+            strengths[vertex as usize] = (2.0 * lips.mean_around(*uv, LIP_FADE)).min(1.0);
+        }
+    }
+    strengths
+}
+
+/// Splits quads into triangles, by part, with a vertex for each position, texture coordinates and part: at the edge of the
+/// lips, the skin alone is tinted. `lip_strengths` may be shorter than the positions: others have none.
+fn to_mesh(quads: &QuadMesh, normals: &[Vec3], colors: &[Vec3], lip_strengths: &[f32]) -> Mesh {
     let (vertex_count, triangle_count) = (quads.positions.len() * 5 / 4, quads.quads.len() * 2);
     let mut mesh = Mesh {
         positions: Vec::with_capacity(vertex_count),
@@ -199,30 +222,32 @@ fn to_mesh(quads: &QuadMesh, normals: &[Vec3], colors: &[Vec3]) -> Mesh {
         triangles: Vec::with_capacity(triangle_count),
         ..Mesh::default()
     };
-    // The vertices of each position form a list, one for each pair of texture coordinates
+    // The vertices of each position form a list, the last one first
     const END: u32 = u32::MAX;
     let (mut first, mut next) = (vec![END; quads.positions.len()], Vec::with_capacity(vertex_count));
-    let mut vertex_of = |mesh: &mut Mesh, position: u32, uv: Vec2| {
+    let mut vertex_of = |mesh: &mut Mesh, (part, part_start): (usize, u32), position: u32, uv: Vec2| {
         let position = position as usize;
         let mut vertex = first[position];
-        while vertex != END && mesh.uvs[vertex as usize] != uv {
+        while vertex != END && vertex >= part_start && mesh.uvs[vertex as usize] != uv {
             vertex = next[vertex as usize];
         }
-        if vertex == END {
+        if vertex == END || vertex < part_start {
             vertex = mesh.positions.len() as u32;
             next.push(std::mem::replace(&mut first[position], vertex));
             mesh.positions.push(quads.positions[position]);
             mesh.normals.push(normals[position]);
-            mesh.colors.push(colors[position]);
+            let strength = lip_strengths.get(position).filter(|_| part == usize::from(SKIN)).copied().unwrap_or(0.0);
+            mesh.colors.push(colors[position] * Vec3::ONE.lerp(Vec3::from(LIP_TINT), strength));
             mesh.uvs.push(uv);
         }
         vertex
     };
     for (part, name) in PARTS.into_iter().enumerate() {
         let start = mesh.triangles.len() as u32;
+        let of_part = (part, mesh.positions.len() as u32);
         for index in (0..quads.quads.len()).filter(|&i| usize::from(quads.parts[i]) == part) {
             let [a, b, c, d] =
-                std::array::from_fn(|k| vertex_of(&mut mesh, quads.quads[index][k], quads.uvs[index][k]));
+                std::array::from_fn(|k| vertex_of(&mut mesh, of_part, quads.quads[index][k], quads.uvs[index][k]));
             mesh.triangles.extend([[a, b, c], [a, c, d]]);
         }
         let end = mesh.triangles.len() as u32;
@@ -283,5 +308,37 @@ mod tests {
             let height = (root - mesh.positions[nearest]).dot(mesh.normals[nearest]);
             assert!(height.abs() < DEPTH_M, "root {index} is {height} m over the skin");
         }
+    }
+
+    #[test]
+    fn skin_has_the_colour_of_the_lips_at_their_edge_and_its_own_three_millimetres_from_it() {
+        let mesh = build(&READY[0].figure()).fine;
+        let vertices = |name: &str| {
+            let part = mesh.parts.iter().find(|part| part.name == name).unwrap();
+            let triangles = &mesh.triangles[part.triangles.start as usize..part.triangles.end as usize];
+            let mut vertices: Vec<usize> = triangles.iter().flatten().map(|&v| v as usize).collect();
+            vertices.sort_unstable();
+            vertices.dedup();
+            vertices
+        };
+        let (skin, lips) = (vertices("skin"), vertices("lips"));
+        let middle = lips.iter().map(|&v| mesh.positions[v]).sum::<Vec3>() / lips.len() as f32;
+        let near = skin.iter().filter(|&&v| mesh.positions[v].distance(middle) < 0.04);
+        let to_lips = |v: usize| {
+            let distance = |&lip: &usize| (mesh.positions[lip].distance(mesh.positions[v]), lip);
+            lips.iter().map(distance).min_by(|a, b| a.0.total_cmp(&b.0)).unwrap()
+        };
+        let (mut at_edge, mut beyond) = (Vec::new(), Vec::new());
+        for &vertex in near {
+            match to_lips(vertex) {
+                (0.0, lip) => at_edge.push(mesh.colors[vertex] / mesh.colors[lip]),
+                (0.003..0.007, lip) => beyond.push(mesh.colors[vertex] / mesh.colors[lip]),
+                _ => (),
+            }
+        }
+        let mean = |ratios: &[Vec3]| ratios.iter().sum::<Vec3>() / ratios.len() as f32;
+        assert!(at_edge.len() > 50 && beyond.len() > 50, "{} {}", at_edge.len(), beyond.len());
+        assert!(mean(&at_edge).distance(Vec3::from(LIP_TINT)) < 0.1, "{}", mean(&at_edge));
+        assert!(mean(&beyond).distance(Vec3::ONE) < 0.1, "{}", mean(&beyond));
     }
 }

@@ -104,6 +104,9 @@ pub const HAIR_COLORS: [MaterialPreset; 7] = [
     MaterialPreset::HairWhite,
 ];
 
+/// Colour of lips as a factor of the skin's: less melanin, and more blood near the surface. Typical, not measured.
+pub(super) const LIP_TINT: [f32; 3] = [0.86, 0.56, 0.6];
+
 /// Returns the materials of the parts that are not skin. A dark `skin`, the object's own material, gets darker eyes.
 pub fn default_parts(skin: &Material, figure: &Figure) -> Vec<(String, Material)> {
     let gloss = |base_color| Material { base_color, ..MaterialPreset::Eye.material() };
@@ -116,8 +119,9 @@ pub fn default_parts(skin: &Material, figure: &Figure) -> Vec<(String, Material)
     let age = ((figure.body.age_years - 40.0) / 50.0).clamp(0.0, 1.0);
     let white = MaterialPreset::Eye.material();
     let white = Material { base_color: white.base_color.map(|c| c * (1.0 - 0.12 * age)), ..white };
-    // Lips are skin with less melanin and more blood near the surface, and moist: a typical roughness.
-    let lips = Material { base_color: [0.86 * r, 0.56 * g, 0.6 * b], roughness: 0.42, ..skin.clone() };
+    // Lips are moist: a typical roughness.
+    let [red, green, blue] = LIP_TINT;
+    let lips = Material { base_color: [red * r, green * g, blue * b], roughness: 0.42, ..skin.clone() };
     let parts = [
         ("eyes", white),
         ("iris", iris.material()),
