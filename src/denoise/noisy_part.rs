@@ -8,7 +8,8 @@
 //!
 //! A single bright sample has a large difference, and its variance may be small by chance. So a pixel has at least the
 //! relative variance of its neighbourhood, and both halves of the neighbouring pixels must tell of bias: the lower one
-//! of their estimates counts.
+//! of their estimates counts. Where the difference is little more than the noise, it counts in part: by chance, some
+//! pixels of any large picture differ by twice the variance, and would be specks on skin.
 
 use crate::color::luminance;
 use crate::photo::{AovPicture, Picture};
@@ -17,6 +18,10 @@ use rayon::prelude::*;
 
 /// Pixels around a pixel, to each side, whose variance and difference count, less and less.
 const RADIUS: usize = 5;
+/// Mean square difference over the variance up to which nothing counts as bias, and from which all that the noise does
+/// not explain does.
+const DOUBTFUL: f32 = 1.25;
+const SURE: f32 = 2.25;
 /// The estimates of a pixel of which nothing is known, or that is no number: all of it counts as noise.
 const UNKNOWN: [f32; 3] = [f32::INFINITY, 1.0, 0.0];
 
@@ -72,8 +77,10 @@ impl NoisyPart {
 
 /// Returns the part of the noisy picture where the mean square of the differences is so many variances; 0 for NaN.
 fn part(ratio: f32) -> f32 {
-    let squared_bias = (ratio - 1.0).max(0.0);
-    1.0 - 1.0 / (1.0 + squared_bias)
+    let ratio = ratio.max(1.0);
+    let squared_bias = ratio - 1.0;
+    let certainty = ((ratio - DOUBTFUL) / (SURE - DOUBTFUL)).clamp(0.0, 1.0);
+    certainty * (1.0 - 1.0 / (1.0 + squared_bias))
 }
 
 /// Returns weighted means around each pixel, over rows and then over columns, with weights that fall linearly.
@@ -144,6 +151,17 @@ mod tests {
         assert!(mixed.rgb.iter().flatten().all(|value| (value - expected).abs() < 1e-4), "{:?}", mixed.rgb[0]);
         // Without noise the noisy picture is the true one
         assert_eq!(mixture(&noisy, &denoised, &with_variance(&noisy, 0.0)), noisy);
+    }
+
+    #[test]
+    fn differences_little_above_the_noise_leave_the_denoised_picture_as_it_is() {
+        let denoised = picture(20, 10, |_| 1.0);
+        let noisy = |error: f32| picture(20, 10, |pixel| if pixel % 2 == 0 { 1.0 + error } else { 1.0 - error });
+        // 1.2 variances
+        let noise = noisy(0.1 * 1.2_f32.sqrt());
+        assert_eq!(mixture(&noise, &denoised, &with_variance(&noise, 0.01)), denoised);
+        // The part grows without steps
+        assert!(part(DOUBTFUL + 1e-3) < 1e-3 && (part(SURE - 1e-3) - part(SURE)).abs() < 1e-3);
     }
 
     #[test]
