@@ -299,7 +299,8 @@ pub fn beard_density(place: Vec3) -> f32 {
     let upper = cheek + (0.005 - cheek) * to_sideburn * to_sideburn;
     let lower = -0.128 - 0.35 * (z + 0.02).min(0.0).abs().min(0.05) + 0.9 * (x - 0.03).max(0.0);
     let lips = (x / 0.027).powi(2) + ((y + 0.068) / 0.0115).powi(2);
-    let is_skin = z > -0.078 && lips > 1.0 && !(x < 0.02 && y > -0.052);
+    let is_ear = x > 0.0675 && y > -0.05 && z < -0.0585;
+    let is_skin = z > -0.078 && !is_ear && lips > 1.0 && !(x < 0.02 && y > -0.052);
     let edge = ((upper - y) / 0.008).min((y - lower) / 0.025).clamp(0.0, 1.0);
     // It thins out towards the sides of the neck
     let front = ((z + 0.078) / 0.02 - ((-0.1 - y) / 0.02).clamp(0.0, 1.0)).clamp(0.0, 1.0);
@@ -321,5 +322,16 @@ mod tests {
         let crown = tied.root_density(Vec3::new(0.0, 0.15, -0.08));
         assert!(at(-0.001) == 0.0 && at(0.003) < 0.2 * at(0.014), "{} {}", at(0.003), at(0.014));
         assert!(at(0.02) > 1.2 * crown, "{} {crown}", at(0.02));
+    }
+
+    #[test]
+    fn beards_grow_on_the_jaw_and_before_the_ears_and_not_on_them() {
+        for side in [1.0, -1.0] {
+            let density = |place: Vec3| beard_density(place * Vec3::new(side, 1.0, 1.0));
+            let [jaw, sideburn] = [Vec3::new(0.06, -0.07, -0.04), Vec3::new(0.0704, -0.018, -0.0528)];
+            assert!(density(jaw) > 0.9 && density(sideburn) > 0.9, "{} {}", density(jaw), density(sideburn));
+            let lobe = [Vec3::new(0.0734, -0.0441, -0.0698), Vec3::new(0.071, -0.035, -0.0615)];
+            assert_eq!(lobe.map(density), [0.0; 2]);
+        }
     }
 }
