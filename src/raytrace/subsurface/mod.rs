@@ -6,12 +6,13 @@
 //! thick flat body has the base colour as its albedo. The coat's energy is shared as in [`super::bsdf`], with the
 //! outgoing direction at the entry and the incident direction at the exit.
 //!
-//! A walk ends at its entry where it cannot leave by the object's soft surface: at parts of another material, at surfaces
-//! that it meets from outside, as where a mesh overlaps itself or has an opening, and where the mean free path is too
-//! short for the precision of positions. It has the light of the same walk in a half-space, so that the material looks as
-//! without subsurface scattering: lids over eyes, lips over teeth. After [`walk::MAX_STEPS`] scattering events, walks end
-//! at their entry with what is left of their light. Other objects inside of the body are ignored, and surfaces seen from inside are
-//! diffuse. The method `direct` walks once, at the first non-specular surface; Whitted's sees a diffuse surface.
+//! A walk ends at its entry where it cannot leave by the object's soft surface: at parts of another material, at
+//! surfaces that it meets from outside, as where a mesh overlaps itself or has an opening, and where the mean free path
+//! is too short for the precision of positions. It has the light of the same walk in a half-space, so that the material
+//! looks as without subsurface scattering: lids over eyes, lips over teeth. After [`walk::MAX_STEPS`] scattering
+//! events, walks end at their entry with what is left of their light. Other objects inside of the body are ignored, and
+//! surfaces seen from inside are diffuse. The method `direct` walks once, at the first non-specular surface; Whitted's
+//! sees a diffuse surface.
 //!
 //! [`walk`] is the walk, `path` its place in a path.
 
