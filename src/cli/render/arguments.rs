@@ -78,7 +78,8 @@ pub struct Arguments {
     #[arg(long)]
     pub layers: bool,
     /// Write what each pixel shows beside its light (exr only): albedo.R/G/B, normal.X/Y/Z (world), Z (metres along the
-    /// view axis, infinite where there is nothing), id (0 nothing, 1 the room, then the objects in the file's order).
+    /// view axis, infinite where there is nothing), id (0 nothing, 1 the room, then the objects in the file's order), and
+    /// from 8 samples on RelativeVariance.Y (of the mean luminance, over its square).
     #[arg(long)]
     pub aovs: bool,
     /// Remove the noise with a neural network. Fine detail that looks like noise gets lost: hair, textures, small

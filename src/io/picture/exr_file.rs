@@ -113,8 +113,12 @@ pub(super) fn part<'a>(
     Layer::new(size, attributes, Encoding::SMALL_LOSSLESS, AnyChannels::sort(channels.into()))
 }
 
+/// Name of the channel with the variance of a pixel's mean luminance, divided by the square of the mean, as pbrt's
+/// `RelativeVariance.R`.
+pub(super) const VARIANCE_CHANNEL: &str = "RelativeVariance.Y";
+
 /// Returns the channels of the AOVs, with the names of the OpenEXR conventions: normals in world space, `Z` in metres
-/// along the view axis, `id` as unsigned integers.
+/// along the view axis, `id` as unsigned integers, and the variance where it is known.
 fn aov_channels(aovs: &AovPicture) -> Vec<ExrChannel<'_>> {
     let width = aovs.width as usize;
     let albedo = vector_channels(["albedo.R", "albedo.G", "albedo.B"], move |x, y| aovs.albedo[y * width + x]);
@@ -122,6 +126,10 @@ fn aov_channels(aovs: &AovPicture) -> Vec<ExrChannel<'_>> {
     all.extend(vector_channels(["normal.X", "normal.Y", "normal.Z"], move |x, y| aovs.normal[y * width + x]));
     all.push(AnyChannel::new("Z", ChannelSamples::f32(move |x, y| aovs.depth_m[y * width + x])));
     all.push(AnyChannel::new("id", ChannelSamples::u32(move |x, y| aovs.object_id[y * width + x])));
+    if aovs.relative_variance.iter().any(|variance| variance.is_finite()) {
+        let variance = ChannelSamples::f32(move |x, y| aovs.relative_variance[y * width + x]);
+        all.push(AnyChannel::new(VARIANCE_CHANNEL, variance));
+    }
     all
 }
 

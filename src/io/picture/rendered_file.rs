@@ -1,7 +1,7 @@
 //! Rendered pictures that are read back from EXR files, with their lights and the studio.
 
 use super::PictureInfo;
-use super::exr_file::{NOISY_CHANNELS, SHOWN_CHANNELS, checked_size, is_part_name, text};
+use super::exr_file::{NOISY_CHANNELS, SHOWN_CHANNELS, VARIANCE_CHANNEL, checked_size, is_part_name, text};
 use super::exr_header::{Header, ReadExrPart, read_parts};
 use crate::io::error::{Problem, reason};
 use crate::io::kept_picture::KeptPicture;
@@ -106,7 +106,12 @@ fn aovs(part: &ReadExrPart) -> Result<Option<AovPicture>, String> {
     let albedo = vectors(part, ["albedo.R", "albedo.G", "albedo.B"]).ok_or("the albedo is missing")?;
     let normal = vectors(part, ["normal.X", "normal.Y", "normal.Z"]).ok_or("the normals are missing")?;
     let (depth_m, object_id) = (depth_m.clone(), object_id.clone());
-    Ok(Some(AovPicture { albedo, normal, depth_m, object_id, ..AovPicture::new(width, height) }))
+    let mut aovs = AovPicture { albedo, normal, depth_m, object_id, ..AovPicture::new(width, height) };
+    if let Some(FlatSamples::F32(variance)) = header.channel(VARIANCE_CHANNEL) {
+        let known = |&variance: &f32| if variance >= 0.0 { variance } else { f32::INFINITY };
+        aovs.relative_variance = variance.iter().map(known).collect();
+    }
+    Ok(Some(aovs))
 }
 
 /// Returns the vectors of three channels, rows from the top; none if one is missing.
@@ -125,10 +130,15 @@ mod tests {
 
     /// Renders a shipped studio, and returns its film with the bytes of its file.
     fn rendered(index: usize, change: impl Fn(&mut Scene)) -> (Film, Scene, Vec<u8>) {
+        rendered_with(index, 4, change)
+    }
+
+    /// As [`rendered`], with so many samples.
+    fn rendered_with(index: usize, spp: u32, change: impl Fn(&mut Scene)) -> (Film, Scene, Vec<u8>) {
         let mut loaded = presets()[index].load().unwrap();
         change(&mut loaded.scene);
         let prepared = prepare(&loaded.scene, &loaded.assets).unwrap();
-        let settings = Settings { width: 37, height: 21, spp: 4, aovs: true, ..Settings::default() };
+        let settings = Settings { width: 37, height: 21, spp, aovs: true, ..Settings::default() };
         let film = render(&prepared, &settings, &RenderControl::new(), &mut |_| ControlFlow::Continue(()));
         let (picture, layers, aovs) = (film.develop(&loaded.scene), film.lazy_layers(&loaded.scene), film.aovs());
         let info = PictureInfo::new(&loaded.scene, &film.method(), film.spp(), 7);
@@ -163,6 +173,20 @@ mod tests {
         mixed.lights[2].on = false;
         assert_same(&read.film.develop(&mixed), &film.develop(&mixed));
         assert_ne!(read.film.develop(&mixed), read.film.develop(&scene));
+    }
+
+    #[test]
+    fn the_noise_of_a_picture_comes_back_and_the_denoiser_keeps_what_it_kept() {
+        let (film, scene, bytes) = rendered_with(0, 9, |_| {});
+        let read = decode(&bytes).unwrap().picture.film;
+        let [ours, theirs] = [&read, &film].map(|film| film.denoiser_aovs().unwrap().relative_variance);
+        assert!(theirs.iter().all(|variance| variance.is_finite()));
+        // Negative samples of skin are cut off in a file
+        let differ = ours.iter().zip(&theirs).filter(|(a, b)| (*a - *b).abs() > 1e-3 * b.max(1e-6)).count();
+        assert!(differ * 12 < ours.len(), "{differ} of {}", ours.len());
+        assert!((read.noise_stops() / film.noise_stops() - 1.0).abs() < 0.3, "{}", read.noise_stops());
+        assert_eq!(read.spp(), 9);
+        assert_same(&read.develop(&scene), &film.develop(&scene));
     }
 
     #[test]

@@ -50,6 +50,15 @@ pub struct SampleBlocks {
     trend: DifferenceTrend,
 }
 
+/// What is known of the samples of a pixel.
+#[derive(Clone, Copy, Debug)]
+pub struct PixelNoise {
+    /// Mean exposed luminance.
+    pub luminance: f32,
+    /// Variance of the mean, divided by the square of the mean; infinite where it is not known.
+    pub relative_variance: f32,
+}
+
 /// A difference D of two blocks.
 #[derive(Clone, Copy, Debug)]
 struct BlockDifference {
@@ -84,6 +93,22 @@ impl SampleBlocks {
     pub fn clear(&mut self) {
         self.sums.iter_mut().for_each(|block| block.fill(0.0));
         (self.samples, self.trend) = ([0; 2], DifferenceTrend::default());
+    }
+
+    /// Replaces all samples by so many with this noise: those of two blocks, or of one if the noise of a pixel is not known.
+    pub fn set(&mut self, samples: u32, pixels: &[PixelNoise]) {
+        let is_known = samples > 1 && pixels.iter().all(|pixel| pixel.relative_variance.is_finite());
+        let first = if is_known { samples / 2 } else { 0 };
+        (self.samples, self.trend) = ([first, samples - first], DifferenceTrend::default());
+        let [p, q] = self.samples.map(|samples| samples as f32);
+        let [before, since] = &mut self.sums;
+        for ((before, since), pixel) in before.iter_mut().zip(since).zip(pixels) {
+            let PixelNoise { luminance, relative_variance } = *pixel;
+            // The difference of the blocks' means of which `relative_variance` makes this variance
+            let difference = if is_known { luminance * (p + q) * (relative_variance / (p * q)).sqrt() } else { 0.0 };
+            *before = p * luminance + difference * p * q / (p + q);
+            *since = q * luminance - difference * p * q / (p + q);
+        }
     }
 
     /// Begins a pass. If the samples have doubled, a new block begins.
