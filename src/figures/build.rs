@@ -31,7 +31,7 @@ const KEPT_FIGURES: usize = 2;
 /// Distance from the lips over which skin loses their colour, in texture coordinates: 1.6 mm.
 const LIP_FADE: f32 = 1.6 / 1024.0;
 /// Middle of the mouth, metres from between the eyes, and a radius round it that holds the lips and their fading colour.
-const MOUTH: (Vec3, f32) = (Vec3::new(0.0, -0.072, 0.03), 0.05);
+const MOUTH: (Vec3, f32) = (Vec3::new(0.0, -0.072, 0.03), 0.04);
 /// Skin reaches this far below the edge of a garment, metres.
 const OVERLAP_M: f32 = 0.03;
 
@@ -199,12 +199,15 @@ fn lip_strengths(data: &BodyData, mesh: &QuadMesh) -> Vec<f32> {
     let mut strengths = vec![0.0; mesh.positions.len()];
     let Some(lips) = data.masks.get("lips") else { return strengths };
     let (middle, radius) = MOUTH;
-    let is_near =
-        |v: u32| mesh.values.get(v as usize).is_some_and(|place| place.distance_squared(middle) < radius * radius);
+    let mut is_to_do: Vec<bool> =
+        mesh.values.iter().map(|place| place.distance_squared(middle) < radius * radius).collect();
+    is_to_do.resize(strengths.len(), false);
     for (quad, uvs) in mesh.quads.iter().zip(&mesh.uvs) {
-        for (&vertex, uv) in quad.iter().zip(uvs).filter(|(vertex, _)| is_near(**vertex)) {
-            // At the edge of the lips, half of the surroundings are lips
-            strengths[vertex as usize] = (2.0 * lips.mean_around(*uv, LIP_FADE)).min(1.0);
+        for (&vertex, uv) in quad.iter().zip(uvs) {
+            if std::mem::take(&mut is_to_do[vertex as usize]) {
+                // At the edge of the lips, half of the surroundings are lips
+                strengths[vertex as usize] = (2.0 * lips.mean_around(*uv, LIP_FADE)).min(1.0);
+            }
         }
     }
     strengths
