@@ -2,7 +2,10 @@
 
 use super::*;
 use catchlight::editor::SpotReading;
+use catchlight::io::{LayeredPicture, Loaded, PictureInfo, picture_file, presets};
 use catchlight::photo::{Histogram, Picture, PictureDisplay};
+use catchlight::raytrace::{self, RenderControl, Settings};
+use std::ops::ControlFlow;
 
 #[test]
 fn light_changes_redevelop_the_picture_without_tracing() {
@@ -118,7 +121,7 @@ fn the_quality_chart_forecasts_time_and_noise_and_uses_measured_renders() {
     let denoiser_s = forecast.denoiser_s(60 * 40);
     let fitting = forecast.estimate(60 * 40, settings.samples).seconds + denoiser_s;
     assert!(denoiser_s > 1e-4, "the denoiser's time is measured: {denoiser_s}");
-    assert_eq!((settings.quality, settings.method), (Quality::Custom, catchlight::raytrace::Method::Path));
+    assert_eq!((settings.quality, settings.method), (Quality::Custom, raytrace::Method::Path));
     assert!(fitting <= 10.0 && fitting > 5.0, "{fitting} s for {} samples", settings.samples);
     // What a render took counts from then on.
     window.state_mut().rendering_mut().settings.samples = 32;
@@ -263,6 +266,29 @@ fn scopes_show_clipping_false_colour_zebra_and_the_light_under_the_pointer() {
     let share = |reading: &SpotReading| reading.lights.iter().find(|(name, _)| *name == key).unwrap().1;
     assert!(share(&reading) > 0.2 && share(&without) == 0.0, "{reading:?} and {without:?}");
     assert!(without.spot.stops() < reading.spot.stops());
+}
+
+#[test]
+fn an_exr_picture_without_albedo_and_normals_says_that_it_is_not_denoised() {
+    if !has_adapter() {
+        return;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("plain.exr");
+    let Loaded { scene, assets, .. } = presets()[0].load().unwrap();
+    let prepared = raytrace::prepare(&scene, &assets).unwrap();
+    let settings = Settings { width: 24, height: 36, spp: 1, ..Settings::default() };
+    let film = raytrace::render(&prepared, &settings, &RenderControl::new(), &mut |_| ControlFlow::Continue(()));
+    let (picture, layers) = (film.develop(&scene), film.lazy_layers(&scene));
+    let info = PictureInfo::new(&scene, &film.method(), film.spp(), 0);
+    let shown = LayeredPicture { picture: &picture, layers: &layers };
+    picture_file(&file, shown, None, None, &info).unwrap().write().unwrap();
+    let mut window = window_with_answers([]);
+    files::drop_file(&mut window, &file);
+    assert_eq!(errors(&window), Vec::<String>::new());
+    assert!(window.query_by_label("Not denoised").is_some() && window.query_by_label("Denoised").is_none());
+    click(&mut window, "Denoise");
+    assert!(window.query_by_label("Not denoised").is_none(), "the denoiser is off");
 }
 
 #[test]

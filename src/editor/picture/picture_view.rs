@@ -181,5 +181,10 @@ fn denoise_ui(ui: &mut Ui, rendering: &Rendering, out: &mut Vec<Command>) {
     if rendering.is_denoised() {
         ui.label(RichText::new("Denoised").color(theme::ACCENT))
             .on_hover_text("These pixels are an estimate, not traced light. Lights can still be changed.");
+    } else if rendering.settings.denoise && rendering.lacks_aovs() {
+        ui.label(RichText::new("Not denoised").color(theme::ACCENT)).on_hover_text(
+            "The denoiser reads albedo and normals, and the file of this picture has none. Pictures that are exported from \
+             this window have them, those of the command line with --aovs.",
+        );
     }
 }

@@ -255,6 +255,11 @@ impl Rendering {
         self.developed.as_ref().is_some_and(|developed| developed.denoiser.is_some())
     }
 
+    /// Returns true if there is a picture that the denoiser cannot read: it was opened from a file without AOVs.
+    pub fn lacks_aovs(&self) -> bool {
+        self.film.as_ref().is_some_and(|film| !film.has_aovs())
+    }
+
     /// Returns width and height of the picture of the job, pixels.
     pub fn size(&self) -> Option<(u32, u32)> {
         self.job.as_ref().map(|job| (job.settings.width, job.settings.height))

@@ -228,6 +228,11 @@ impl Film {
         factors.collect()
     }
 
+    /// Returns true if it has AOVs.
+    pub fn has_aovs(&self) -> bool {
+        self.tiles.iter().all(|tile| tile.aovs.is_some())
+    }
+
     /// The AOVs; none unless [`Settings::aovs`] asked for them.
     pub fn aovs(&self) -> Option<AovPicture> {
         self.aovs_by(AovTile::write)
