@@ -30,7 +30,7 @@ const REGIONS: [(u8, &str); 3] = [(8, "lips"), (9, "fingernails"), (10, "inside-
 const KEPT_FIGURES: usize = 2;
 /// Distance from the lips over which skin loses their colour, in texture coordinates: 1.6 mm.
 const LIP_FADE: f32 = 1.6 / 1024.0;
-/// Middle of the mouth, metres from between the eyes, and a radius round it that holds the lips and their fading colour.
+/// Middle of the mouth, metres from between the eyes, and the radius of a ball round the lips and their fading colour.
 const MOUTH: (Vec3, f32) = (Vec3::new(0.0, -0.072, 0.03), 0.04);
 /// Skin reaches this far below the edge of a garment, metres.
 const OVERLAP_M: f32 = 0.03;
@@ -213,8 +213,8 @@ fn lip_strengths(data: &BodyData, mesh: &QuadMesh) -> Vec<f32> {
     strengths
 }
 
-/// Splits quads into triangles, by part, with a vertex for each position, texture coordinates and part: at the edge of the
-/// lips, the skin alone is tinted. `lip_strengths` may be shorter than the positions: others have none.
+/// Splits quads into triangles, by part, with a vertex for each position, texture coordinates and part: at the edge of
+/// the lips, the skin alone is tinted. `lip_strengths` may be shorter than the positions: others have none.
 fn to_mesh(quads: &QuadMesh, normals: &[Vec3], colors: &[Vec3], lip_strengths: &[f32]) -> Mesh {
     let (vertex_count, triangle_count) = (quads.positions.len() * 5 / 4, quads.quads.len() * 2);
     let mut mesh = Mesh {

@@ -299,8 +299,9 @@ pub fn beard_density(place: Vec3) -> f32 {
     let upper = cheek + (0.005 - cheek) * to_sideburn * to_sideburn;
     let lower = -0.128 - 0.35 * (z + 0.02).min(0.0).abs().min(0.05) + 0.9 * (x - 0.03).max(0.0);
     let lips = (x / 0.027).powi(2) + ((y + 0.068) / 0.0115).powi(2);
-    let is_ear = x > 0.0675 && y > -0.05 && z < -0.0585;
-    let is_skin = z > -0.078 && !is_ear && lips > 1.0 && !(x < 0.02 && y > -0.052);
+    // The ear from where it joins the cheek; `is_ear` is what stands out and hair of the head avoids
+    let is_beside_cheek = x > 0.0675 && y > -0.05 && z < -0.0585;
+    let is_skin = z > -0.078 && !is_beside_cheek && lips > 1.0 && !(x < 0.02 && y > -0.052);
     let edge = ((upper - y) / 0.008).min((y - lower) / 0.025).clamp(0.0, 1.0);
     // It thins out towards the sides of the neck
     let front = ((z + 0.078) / 0.02 - ((-0.1 - y) / 0.02).clamp(0.0, 1.0)).clamp(0.0, 1.0);

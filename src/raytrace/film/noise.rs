@@ -95,7 +95,7 @@ impl SampleBlocks {
         (self.samples, self.trend) = ([0; 2], DifferenceTrend::default());
     }
 
-    /// Replaces all samples by so many with this noise: those of two blocks, or of one if the noise of a pixel is not known.
+    /// Replaces all samples by so many with this noise: in two blocks, or in one if the noise of a pixel is not known.
     pub fn set(&mut self, samples: u32, pixels: &[PixelNoise]) {
         let is_known = samples > 1 && pixels.iter().all(|pixel| pixel.relative_variance.is_finite());
         let first = if is_known { samples / 2 } else { 0 };
@@ -173,7 +173,8 @@ impl SampleBlocks {
     }
 
     /// Estimates the variance of a pixel's mean, divided by the square of the mean, by the difference of the two blocks.
-    /// The estimate is too large, as samples are stratified. Infinite before there are [`MIN_VARIANCE_SPP`] samples, in both blocks.
+    /// The estimate is too large, as samples are stratified. Infinite before there are [`MIN_VARIANCE_SPP`] samples, in
+    /// both blocks.
     pub fn relative_variance(&self, pixel: usize) -> f32 {
         let [p, q] = self.samples.map(|samples| samples as f32);
         if self.samples() < MIN_VARIANCE_SPP || p == 0.0 || q == 0.0 {

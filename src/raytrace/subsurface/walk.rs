@@ -84,8 +84,8 @@ struct Ends {
 /// The end of the walk in the body.
 #[derive(Clone, Copy, Debug)]
 enum BodyEnd {
-    /// At its soft surface, or after the last step.
-    Light(WalkEnd),
+    /// At its soft surface, or at the entry after the last step.
+    Arrived(WalkEnd),
     /// At a surface by which no light leaves.
     Stopped,
 }
@@ -225,7 +225,7 @@ impl KernelTask for Walk<'_> {
             }
             u_distance = self.numbers.next();
         }
-        ends.body.get_or_insert(BodyEnd::Light(self.end_at_entry(weights.contribution)));
+        ends.body.get_or_insert(BodyEnd::Arrived(self.end_at_entry(weights.contribution)));
         ends.flat_weight.get_or_insert(weights.contribution);
         self.finish(ends)
     }
@@ -238,7 +238,7 @@ impl Walk<'_> {
         let surface = self.instance.surface(hit);
         let is_soft = self.materials[surface.material as usize].extinction_per_m().is_some();
         let leaves = is_soft && direction.dot(surface.geometric_normal) > 0.0;
-        if leaves { BodyEnd::Light(WalkEnd { surface, weight, is_entry: false }) } else { BodyEnd::Stopped }
+        if leaves { BodyEnd::Arrived(WalkEnd { surface, weight, is_entry: false }) } else { BodyEnd::Stopped }
     }
 
     #[inline(always)]
@@ -246,12 +246,12 @@ impl Walk<'_> {
         WalkEnd { surface: *self.entry, weight, is_entry: true }
     }
 
-    /// Returns the pair where no walk goes on: light that has not left is absorbed. A walk that was stopped has the light
-    /// of the half-space: what was left of its own lacks the absorption of the way that it did not take.
+    /// Returns the pair where no walk goes on: light that has not left is absorbed. A walk that was stopped has the
+    /// light of the half-space: what was left of its own lacks the absorption of the way that it did not take.
     #[inline(always)]
     fn finish(&self, ends: Ends) -> WalkPair {
         let end = match ends.body {
-            Some(BodyEnd::Light(end)) => Some(end),
+            Some(BodyEnd::Arrived(end)) => Some(end),
             Some(BodyEnd::Stopped) => ends.flat_weight.map(|weight| self.end_at_entry(weight)),
             None => None,
         };
