@@ -1,4 +1,6 @@
-//! The file format of the body data: little-endian tables, deflated (zlib), after a magic number.
+//! The file format of the body data: little-endian tables, deflated (zlib) in pieces that are inflated in parallel.
+//!
+//! A file is a magic number, the size of the tables, the packed size of each piece, and the pieces.
 //!
 //! Positions and offsets are integers of 0.01 mm and 0.1 mm, the resolution of the source. Offsets of a symmetric target
 //! are stored for one side. Each table of numbers is stored as differences, low bytes before high bytes, which deflate
@@ -9,19 +11,24 @@ use flate2::Compression;
 use flate2::read::ZlibDecoder;
 use flate2::write::ZlibEncoder;
 use glam::{Vec2, Vec3};
+use rayon::prelude::*;
 use std::collections::{BTreeMap, HashMap};
 use std::io::{Read, Write};
 use std::sync::LazyLock;
 
-const MAGIC: &[u8; 8] = b"CLBODY01";
-/// Upper bound of the inflated size, bytes: the shipped file has a quarter of it.
-const MAX_SIZE: u64 = 64 << 20;
+const MAGIC: &[u8; 8] = b"CLBODY02";
+/// Upper bound of the size of the tables, bytes: those of the shipped file have a quarter of it.
+const MAX_SIZE: usize = 64 << 20;
+/// Size of the part of the tables in a piece, bytes; the last piece has less.
+const PIECE: usize = 1 << 20;
 /// Length of a unit of the base mesh's positions, metres.
 const POSITION_UNIT: f32 = 1e-5;
 /// Length of a unit of the targets' offsets, metres.
 const OFFSET_UNIT: f32 = 1e-4;
 /// A unit of texture coordinates.
 const UV_UNIT: f32 = 1e-5;
+/// Bytes of a number of a column.
+const BYTES_OF_A_NUMBER: usize = 4;
 
 /// A file of body data that can't be read.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -59,7 +66,7 @@ impl BodyData {
     /// # Errors
     /// If it is damaged or of another format; every index is checked.
     pub fn decode(bytes: &[u8]) -> Result<BodyData, BodyDataError> {
-        let data = Decoder::inflate(bytes)?.body()?;
+        let data = Decoder { rest: &inflate(bytes)? }.body()?;
         data.check()?;
         Ok(data)
     }
@@ -137,7 +144,7 @@ impl BodyData {
         let units = |offset: Vec3| offset.to_array().map(|x| (x / OFFSET_UNIT).round() as i32);
         let all: Vec<(u16, [i32; 3])> = target.offsets.iter().map(|&(v, o)| (v, units(o))).collect();
         let one_side: Vec<_> = all.iter().copied().filter(|(v, _)| *v <= self.mirror[usize::from(*v)]).collect();
-        let is_symmetric = mirrored(&one_side, &self.mirror) == all;
+        let is_symmetric = mirrored(one_side.clone(), &self.mirror) == all;
         let stored = if is_symmetric { &one_side } else { &all };
         out.count(usize::from(is_symmetric));
         out.count(stored.len());
@@ -149,15 +156,16 @@ impl BodyData {
 }
 
 /// Returns the offsets of one side together with those of the other, by vertex.
-fn mirrored(one_side: &[(u16, [i32; 3])], mirror: &[u16]) -> Vec<(u16, [i32; 3])> {
-    let mut both = one_side.to_vec();
-    for &(vertex, [x, y, z]) in one_side {
-        match mirror.get(usize::from(vertex)) {
-            Some(&other) if other != vertex => both.push((other, [-x, y, z])),
-            _ => {}
-        }
-    }
-    both.sort_unstable_by_key(|(vertex, _)| *vertex);
+fn mirrored(one_side: Vec<(u16, [i32; 3])>, mirror: &[u16]) -> Vec<(u16, [i32; 3])> {
+    let other_side = |&(vertex, [x, y, z]): &(u16, [i32; 3])| {
+        let other = mirror.get(usize::from(vertex)).copied().filter(|other| *other != vertex);
+        other.map(|other| (other, [-x, y, z]))
+    };
+    let others: Vec<_> = one_side.iter().filter_map(other_side).collect();
+    let mut both = one_side;
+    both.extend(others);
+    // The one side is in order, and the other one in long runs: this sort merges them
+    both.sort_by_key(|(vertex, _)| *vertex);
     both
 }
 
@@ -190,55 +198,77 @@ impl Encoder {
         }
     }
 
+    /// Returns the file of the tables.
     fn deflate(self) -> Vec<u8> {
-        let mut out = MAGIC.to_vec();
-        let mut encoder = ZlibEncoder::new(&mut out, Compression::best());
-        // Writing to memory does not fail.
-        let written = encoder.write_all(&self.0).and_then(|()| encoder.finish().map(drop));
-        debug_assert!(written.is_ok());
-        out
+        let packed = |part: &[u8]| {
+            let mut encoder = ZlibEncoder::new(Vec::new(), Compression::best());
+            // Writing to memory does not fail.
+            let written = encoder.write_all(part).and_then(|()| encoder.finish());
+            debug_assert!(written.is_ok());
+            written.unwrap_or_default()
+        };
+        let pieces: Vec<Vec<u8>> = self.0.par_chunks(PIECE).map(packed).collect();
+        let mut file = Encoder(MAGIC.to_vec());
+        file.count(self.0.len());
+        pieces.iter().for_each(|piece| file.count(piece.len()));
+        file.0.extend(pieces.concat());
+        file.0
     }
 }
 
-/// A target as it is in a file.
-struct StoredTarget {
+/// Returns the tables of a file.
+fn inflate(file: &[u8]) -> Result<Vec<u8>, BodyDataError> {
+    let mut header = Decoder { rest: file.strip_prefix(MAGIC).ok_or(BodyDataError::Format)? };
+    let size = header.count()?;
+    if size > MAX_SIZE {
+        return Err(BodyDataError::Stream);
+    }
+    let sizes = (0..size.div_ceil(PIECE)).map(|_| header.count()).collect::<Result<Vec<_>, _>>()?;
+    let pieces = sizes.into_iter().map(|size| header.take(size)).collect::<Result<Vec<_>, _>>()?;
+    let mut tables = vec![0; size];
+    tables.par_chunks_mut(PIECE).zip(pieces).try_for_each(|(part, piece)| {
+        let mut decoder = ZlibDecoder::new(piece);
+        // The checksum is compared where the piece ends
+        let rest = decoder.read_exact(part).and_then(|()| decoder.read(&mut [0]));
+        if matches!(rest, Ok(0)) { Ok(()) } else { Err(BodyDataError::Stream) }
+    })?;
+    Ok(tables)
+}
+
+/// The columns of a target in a file.
+struct StoredTarget<'a> {
+    /// Whether only the offsets of one side are stored.
     is_symmetric: bool,
-    /// By vertex; those of one side for a symmetric target.
-    offsets: Vec<(u16, [i32; 3])>,
+    count: usize,
+    columns: Decoder<'a>,
 }
 
-impl StoredTarget {
+impl StoredTarget<'_> {
     /// Returns the target with the offsets of both sides, metres.
-    fn whole(self, mirror: &[u16]) -> Target {
-        let all = if self.is_symmetric { mirrored(&self.offsets, mirror) } else { self.offsets };
-        Target { offsets: all.into_iter().map(|(v, o)| (v, metres(o, OFFSET_UNIT))).collect() }
+    fn whole(mut self, mirror: &[u16]) -> Result<Target, BodyDataError> {
+        let vertices = self.columns.indices(self.count)?;
+        let [x, y, z] = self.columns.columns(self.count)?;
+        let stored = (0..self.count).map(|i| (vertices[i], [x[i], y[i], z[i]])).collect();
+        let all = if self.is_symmetric { mirrored(stored, mirror) } else { stored };
+        Ok(Target { offsets: all.into_iter().map(|(v, o)| (v, metres(o, OFFSET_UNIT))).collect() })
     }
 }
 
-/// The tables of a file while it is read.
-struct Decoder {
-    bytes: Vec<u8>,
-    at: usize,
+/// The tables of a file while they are read: those that are still to be read.
+#[derive(Clone, Copy)]
+struct Decoder<'a> {
+    rest: &'a [u8],
 }
 
-impl Decoder {
-    /// Inflates a file.
-    fn inflate(file: &[u8]) -> Result<Decoder, BodyDataError> {
-        let packed = file.strip_prefix(MAGIC).ok_or(BodyDataError::Format)?;
-        let mut bytes = Vec::new();
-        let read = ZlibDecoder::new(packed).take(MAX_SIZE).read_to_end(&mut bytes);
-        read.map_err(|_| BodyDataError::Stream)?;
-        Ok(Decoder { bytes, at: 0 })
-    }
-
+impl<'a> Decoder<'a> {
     /// Reads all tables. Indices are not checked.
     fn body(mut self) -> Result<BodyData, BodyDataError> {
         let count = self.count()?;
-        let [x, y, z] = [self.column(count)?, self.column(count)?, self.column(count)?];
+        let [x, y, z] = self.columns(count)?;
         let positions = (0..count).map(|i| metres([x[i], y[i], z[i]], POSITION_UNIT)).collect();
         let mirror = self.indices(count)?;
         let uv_count = self.count()?;
-        let [u, v] = [self.column(uv_count)?, self.column(uv_count)?];
+        let [u, v] = self.columns(uv_count)?;
         let uvs = u.into_iter().zip(v).map(|(u, v)| Vec2::new(u as f32, v as f32) * UV_UNIT).collect();
         let mut groups = Vec::new();
         for _ in 0..self.count()? {
@@ -250,7 +280,8 @@ impl Decoder {
         for _ in 0..self.count()? {
             targets.push((self.text()?, self.target()?));
         }
-        let targets = targets.into_iter().map(|(name, target)| (name, target.whole(&mirror))).collect();
+        let whole = |(name, target): (String, StoredTarget)| Ok((name, target.whole(&mirror)?));
+        let targets = targets.into_par_iter().map(whole).collect::<Result<_, _>>()?;
         let mut bones = Vec::new();
         for _ in 0..self.count()? {
             let name = self.text()?;
@@ -279,20 +310,16 @@ impl Decoder {
         Ok(BodyData { positions, uvs, mirror, groups, targets, bones, weights, masks })
     }
 
-    fn target(&mut self) -> Result<StoredTarget, BodyDataError> {
+    /// Finds the columns of a target, without reading them.
+    fn target(&mut self) -> Result<StoredTarget<'a>, BodyDataError> {
         let is_symmetric = self.count()? == 1;
         let count = self.count()?;
-        let vertices = self.indices(count)?;
-        let [x, y, z] = [self.column(count)?, self.column(count)?, self.column(count)?];
-        let offsets = (0..count).map(|i| (vertices[i], [x[i], y[i], z[i]])).collect();
-        Ok(StoredTarget { is_symmetric, offsets })
+        let columns = self.take(count.checked_mul(4 * BYTES_OF_A_NUMBER).ok_or(BodyDataError::End)?)?;
+        Ok(StoredTarget { is_symmetric, count, columns: Decoder { rest: columns } })
     }
 
-    fn take(&mut self, count: usize) -> Result<&[u8], BodyDataError> {
-        let end = self.at.checked_add(count).ok_or(BodyDataError::End)?;
-        let taken = self.bytes.get(self.at..end).ok_or(BodyDataError::End)?;
-        self.at = end;
-        Ok(taken)
+    fn take(&mut self, count: usize) -> Result<&'a [u8], BodyDataError> {
+        self.rest.split_off(..count).ok_or(BodyDataError::End)
     }
 
     fn count(&mut self) -> Result<usize, BodyDataError> {
@@ -306,7 +333,7 @@ impl Decoder {
     }
 
     fn column(&mut self, count: usize) -> Result<Vec<i32>, BodyDataError> {
-        let planes = self.take(count.checked_mul(4).ok_or(BodyDataError::End)?)?;
+        let planes = self.take(count.checked_mul(BYTES_OF_A_NUMBER).ok_or(BodyDataError::End)?)?;
         let mut value = 0_i32;
         let decode = |i: usize| {
             let zigzag = u32::from_le_bytes([0, 1, 2, 3].map(|plane| planes[plane * count + i]));
@@ -315,6 +342,14 @@ impl Decoder {
             value
         };
         Ok((0..count).map(decode).collect())
+    }
+
+    fn columns<const N: usize>(&mut self, count: usize) -> Result<[Vec<i32>; N], BodyDataError> {
+        let mut columns = [const { Vec::new() }; N];
+        for column in &mut columns {
+            *column = self.column(count)?;
+        }
+        Ok(columns)
     }
 
     fn corners(&mut self, quads: usize) -> Result<Vec<[u16; 4]>, BodyDataError> {
@@ -355,7 +390,13 @@ mod tests {
     fn a_damaged_figure_file_is_refused() {
         let good = include_bytes!("../../assets/figures/body.bin");
         assert_eq!(BodyData::decode(b"solid"), Err(BodyDataError::Format));
-        assert_eq!(BodyData::decode(&good[..good.len() / 2]), Err(BodyDataError::Stream));
+        assert_eq!(BodyData::decode(&good[..good.len() / 2]), Err(BodyDataError::End));
+        // A byte in the middle of a piece, in its checksum, and in the size of the tables
+        for at in [good.len() / 2, good.len() - 1, MAGIC.len() + 3] {
+            let mut damaged = good.to_vec();
+            damaged[at] ^= 0x40;
+            assert_eq!(BodyData::decode(&damaged), Err(BodyDataError::Stream), "byte {at}");
+        }
         let mut data = BodyData::decode(good).unwrap();
         data.groups[0].quads[7][2] = u16::MAX;
         assert_eq!(BodyData::decode(&data.encode()), Err(BodyDataError::Reference("a quad")));

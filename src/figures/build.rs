@@ -68,8 +68,15 @@ pub fn build(figure: &Figure) -> FigureMeshes {
         rayon::join(|| finish(coarse, &normals, &colors, &tears), || finish(fine, &normals, &colors, &tears))
     };
     let hair = || {
-        let mut strands = Strands::clone(&head_hair(still));
-        hair::grow_on_face(&hair_body(data, figure, &body), figure, &mut strands);
+        let of_head = || {
+            let mut strands = Strands::default();
+            strands.append_all(&head_hair(still));
+            strands.end_part("hair");
+            strands
+        };
+        let of_face = || hair::grow_on_face(&hair_body(data, figure, &body), figure);
+        let (mut strands, of_face) = rayon::join(of_head, of_face);
+        strands.append(&of_face);
         strands
     };
     let ((mut coarse, mut fine), strands) = rayon::join(skin, hair);
@@ -90,13 +97,13 @@ fn clothes(still: &Figure) -> Arc<SubdivisionSurface> {
     LAST.get_or(still, || Arc::new(dress(data, still, &PosedBody::new(data, still), garment_part)))
 }
 
-/// Returns the hair of the head of a figure without expression; those of the last ones are kept.
-fn head_hair(still: &Figure) -> Arc<Strands> {
-    static LAST: LastResults<Arc<Strands>> = LastResults::new(KEPT_FIGURES);
+/// Returns the hair of the head of a figure without expression, in groups; those of the last figures are kept.
+fn head_hair(still: &Figure) -> Arc<[Strands]> {
+    static LAST: LastResults<Arc<[Strands]>> = LastResults::new(KEPT_FIGURES);
     let data = BodyData::shipped();
     LAST.get_or(still, || {
         let body = PosedBody::new(data, still);
-        Arc::new(hair::grow_on_head(&hair_body(data, still, &body), still))
+        Arc::from(hair::grow_on_head(&hair_body(data, still, &body), still))
     })
 }
 

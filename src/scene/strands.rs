@@ -80,12 +80,6 @@ impl Strands {
         })
     }
 
-    /// Makes room for so many more strands and points.
-    pub fn reserve(&mut self, strands: usize, points: usize) {
-        self.starts.reserve(strands);
-        self.points.reserve(points);
-    }
-
     /// Appends a strand, from root to tip. Strands of less than two points, and those with a point that is not finite
     /// or a radius that is not positive, are left out.
     pub fn push(&mut self, points: impl IntoIterator<Item = StrandPoint>) {
@@ -126,6 +120,13 @@ impl Strands {
             strands: part.strands.start + first..part.strands.end + first,
         };
         self.parts.extend(other.parts.iter().map(moved));
+    }
+
+    /// Appends groups of strands, one after the other.
+    pub fn append_all(&mut self, groups: &[Strands]) {
+        self.starts.reserve(groups.iter().map(Strands::len).sum());
+        self.points.reserve(groups.iter().map(|group| group.points.len()).sum());
+        groups.iter().for_each(|group| self.append(group));
     }
 
     /// Returns the strands of the parts whose names `is_kept` accepts.

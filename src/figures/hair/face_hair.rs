@@ -1,6 +1,7 @@
 //! Brows, lashes and beards.
 
 use super::hair_body::HairBody;
+use super::in_parallel;
 use super::roots::{Root, scatter};
 use super::style::{BROW, Style, beard_density};
 use crate::figures::random::Random;
@@ -22,12 +23,13 @@ const LOWER_LASHES: usize = 60;
 /// Grows a beard: down and out of the skin.
 pub fn grow_beard(body: &HairBody, figure: &Figure, style: &Style, strands: &mut Strands) {
     let roots = scatter(body, style.strands, figure.seed.wrapping_add(1), &beard_density);
-    for (index, root) in roots.iter().enumerate() {
+    let hairs = in_parallel(&roots, |index, root| {
         let mut random = Random::new(figure.seed, 300_000 + index as u32);
         let length = beard_length(style, root.place) * (0.7 + 0.5 * random.unit());
         let comb = Vec3::new(0.0, -1.0, 0.15);
-        strands.push(bent(body, root, comb, length, style, &mut random));
-    }
+        bent(body, root, comb, length, style, &mut random)
+    });
+    strands.append_all(&hairs);
 }
 
 /// Returns the mean length of a beard's hairs at a place of the face, metres: short at the sideburns, so that it lies
@@ -41,15 +43,16 @@ fn beard_length(style: &Style, place: Vec3) -> f32 {
 /// Grows both brows: from the nose outwards, along the arch.
 pub fn grow_brows(body: &HairBody, figure: &Figure, strands: &mut Strands) {
     let roots = scatter(body, BROW_HAIRS, figure.seed.wrapping_add(2), &|place| brow_density(place, figure.body.sex));
-    for (index, root) in roots.iter().enumerate() {
+    let hairs = in_parallel(&roots, |index, root| {
         let mut random = Random::new(figure.seed, 400_000 + index as u32);
         let outwards = root.place.x.signum();
         // Hairs at the inner end stand up.
         let inner = (1.0 - (root.place.x.abs() - 0.012) / 0.02).clamp(0.0, 1.0);
         let comb = Vec3::new(outwards * (1.0 - 0.6 * inner), 0.25 + 0.7 * inner, -0.2);
         let length = 0.009 * (0.7 + 0.4 * random.unit());
-        strands.push(bent(body, root, comb, length, &BROW, &mut random));
-    }
+        bent(body, root, comb, length, &BROW, &mut random)
+    });
+    strands.append_all(&hairs);
 }
 
 /// Returns how much brow grows at a place of the face (from between the eyes, metres on the base mesh), 0 to 1, for a

@@ -1,6 +1,7 @@
 //! Grows the hair of a head: guides that follow the comb, and strands between them.
 
 use super::hair_body::HairBody;
+use super::in_parallel;
 use super::obstacles::{OVER_CLOTHES_M, Obstacles};
 use super::roots::{Root, scatter};
 use super::style::{Comb, Style};
@@ -8,7 +9,7 @@ use super::torso_surface::ShoulderSide;
 use crate::figures::random::Random;
 use crate::math::{PointSet, atan2, sin_cos_turn};
 use crate::scene::{Figure, StrandPoint, Strands};
-use glam::{Quat, Vec3};
+use glam::{Quat, Vec3, Vec3A};
 use rayon::prelude::*;
 use std::f32::consts::TAU;
 
@@ -64,8 +65,8 @@ const LONGEST_SEGMENT_M: f32 = 0.025;
 /// Longest step in which a guide grows, metres: longer ones would leave the curve of the head.
 const LONGEST_STEP_M: f32 = 0.006;
 
-/// Grows the strands of a style.
-pub fn grow_head(body: &HairBody, figure: &Figure, style: &Style, strands: &mut Strands) {
+/// Grows the strands of a style, in groups.
+pub fn grow_head(body: &HairBody, figure: &Figure, style: &Style) -> Vec<Strands> {
     let roots = scatter(body, style.strands, figure.seed, &|place| style.root_density(place));
     let obstacles = Obstacles::new(body, &roots, matches!(style.comb, Comb::FromParting(_)) && !style.is_short());
     let down = body.head.inverse().transform_vector3(Vec3::NEG_Y).normalize_or(Vec3::NEG_Y);
@@ -81,22 +82,18 @@ pub fn grow_head(body: &HairBody, figure: &Figure, style: &Style, strands: &mut 
     }
     let guides = GuidesBySide::new(guides, style);
     let steps = steps_of(style);
-    let strand = |(index, root): (usize, &Root)| {
+    let strand = |index: usize, root: &Root| {
         let random = Random::new(figure.seed, 100_000 + index as u32);
         let points = follow(root, &guides, &steps, &field, random);
-        points.into_iter().map(|(p, radius_m)| (body.head.transform_point3(p), radius_m)).collect::<Vec<_>>()
+        points.into_iter().map(|(p, radius_m)| StrandPoint { position: body.head.transform_point3(p), radius_m })
     };
-    let grown: Vec<Vec<(Vec3, f32)>> = roots.par_iter().enumerate().map(strand).collect();
-    strands.reserve(grown.len(), grown.iter().map(Vec::len).sum());
-    for points in grown {
-        strands.push(points.into_iter().map(|(position, radius_m)| StrandPoint { position, radius_m }));
-    }
+    in_parallel(&roots, strand)
 }
 
 /// A strand that others follow, in the head's frame.
 struct Guide {
     root: Root,
-    points: Vec<Vec3>,
+    points: Vec<Vec3A>,
     /// Unit vectors across each segment, perpendicular to each other: they bend with the guide and do not turn about it.
     across: Vec<[Vec3; 2]>,
 }
@@ -110,7 +107,7 @@ impl Guide {
             [axis, tangent.cross(axis)]
         };
         let across = points.windows(2).map(across).collect();
-        Guide { root, points, across }
+        Guide { root, points: points.into_iter().map(Vec3A::from).collect(), across }
     }
 }
 
@@ -139,7 +136,8 @@ impl GuidesBySide {
 /// Shortens guides that reach more than [`MAX_TUFT`] times as far from the head as those around them do on average: a
 /// lock that stands out alone is a tuft.
 fn trim_tufts(guides: &mut [Guide], obstacles: &Obstacles) {
-    let reach = |guide: &Guide| guide.points.iter().map(|p| obstacles.height_over_head(*p)).fold(0.0, f32::max);
+    let reach =
+        |guide: &Guide| guide.points.iter().map(|p| obstacles.height_over_head((*p).into())).fold(0.0, f32::max);
     let reaches: Vec<f32> = guides.par_iter().map(reach).collect();
     let mean_around = |guide: &Guide| {
         let is_near = |other: &Guide| other.root.position.distance(guide.root.position) < TUFT_AROUND_M;
@@ -149,7 +147,7 @@ fn trim_tufts(guides: &mut [Guide], obstacles: &Obstacles) {
     };
     let means: Vec<f32> = guides.par_iter().map(mean_around).collect();
     for (guide, (reach, mean)) in guides.iter_mut().zip(reaches.into_iter().zip(means)) {
-        let (root, part) = (guide.root.position, MAX_TUFT * mean / reach);
+        let (root, part) = (Vec3A::from(guide.root.position), MAX_TUFT * mean / reach);
         if part < 1.0 {
             guide.points.iter_mut().for_each(|p| *p = root.lerp(*p, part));
         }
@@ -352,10 +350,11 @@ fn follow(
     let (guides, guide_roots) = guides.on_side(style.side_of_parting(beside.x));
     let near = guide_roots.nearest::<3>(beside);
     let first = &guides[near[0].1];
-    let reach = |guide: &Guide, step: usize| guide.points[step] - guide.root.position;
+    let point = |guide: &Guide, step: usize| Vec3::from(guide.points[step]);
+    let reach = |guide: &Guide, step: usize| point(guide, step) - guide.root.position;
     let goes_along = |guide: &Guide| {
         let is_near = |step| reach(guide, step).dot(reach(first, step)) > 0.5 * reach(first, step).length_squared();
-        is_near(STEPS / 2) && guide.points[STEPS].distance(first.points[STEPS]) < 0.5 * reach(first, STEPS).length()
+        is_near(STEPS / 2) && point(guide, STEPS).distance(point(first, STEPS)) < 0.5 * reach(first, STEPS).length()
     };
     let weights: Vec<(f32, &Guide)> = near
         .iter()
@@ -370,16 +369,17 @@ fn follow(
     let of_wave = atan2(x.abs(), z) / TAU;
     let phase = of_curl * style.phase_scatter + of_wave * (1.0 - style.phase_scatter);
     let spread = Vec3::new(random.bell(), random.bell(), random.bell()) * style.frizz * 0.05 * style.length_m[0];
-    let offset = root.position - first.root.position;
+    let [position, offset, spread] = [root.position, root.position - first.root.position, spread].map(Vec3A::from);
     let side = field.shoulder_side(&first.root);
     let mut points = Vec::with_capacity(steps.len());
     for &StrandStep { along, gather } in steps {
         let at = along * shorter * STEPS as f32;
         let (low, t) = ((at as usize).min(STEPS - 1), at - (at as usize).min(STEPS - 1) as f32);
         // The mean shape of the guides, from this root, drawn towards the first guide
-        let shape = |guide: &Guide| guide.points[low].lerp(guide.points[low + 1], t) - guide.root.position;
-        let mean = weights.iter().map(|(w, guide)| shape(guide) * *w).sum::<Vec3>() / sum;
-        let mut p = root.position + mean.lerp(shape(first), gather) - offset * gather * 0.8 + spread * along;
+        let shape = |guide: &Guide| guide.points[low].lerp(guide.points[low + 1], t) - Vec3A::from(guide.root.position);
+        let mean = weights.iter().map(|(w, guide)| shape(guide) * *w).sum::<Vec3A>() / sum;
+        let p = position + mean.lerp(shape(first), gather) - offset * gather * 0.8 + spread * along;
+        let mut p = Vec3::from(p);
         if style.curl_m > 0.0 {
             let length = at / STEPS as f32 * style.length_m[0];
             let turns = style.turns_per_m * length + phase;

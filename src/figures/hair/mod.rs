@@ -21,6 +21,7 @@ pub use hair_body::HairBody;
 pub use style::{beard_density, begins_sparse, scalp_density};
 
 use crate::scene::{Figure, StrandPoint, Strands};
+use rayon::prelude::*;
 
 /// Every so many strands of hair and beard are drawn in the live view.
 const THINNING: usize = 5;
@@ -28,6 +29,23 @@ const THINNING: usize = 5;
 const THICKENING: f32 = 2.6;
 /// Points of a strand in the live view, or half of its points if those are more: curls need them.
 const COARSE_POINTS: usize = 8;
+/// Number of strands that a thread makes at a time.
+const STRANDS_OF_A_GROUP: usize = 512;
+
+/// Returns the strand of each item with its index, made in parallel: in the order of the items, in groups.
+fn in_parallel<T: Sync, P: IntoIterator<Item = StrandPoint>>(
+    items: &[T],
+    strand: impl Fn(usize, &T) -> P + Sync,
+) -> Vec<Strands> {
+    let group = |(number, items): (usize, &[T])| {
+        let mut group = Strands::default();
+        let indices = number * STRANDS_OF_A_GROUP..;
+        indices.zip(items).for_each(|(index, item)| group.push(strand(index, item)));
+        group
+    };
+    // One group at a time: the other threads are busy with the skin when the hair begins, and help later
+    items.par_chunks(STRANDS_OF_A_GROUP).enumerate().with_max_len(1).map(group).collect()
+}
 
 /// Returns fewer and thicker strands with fewer points, for the live view.
 pub fn thinned(strands: &Strands) -> Strands {
@@ -35,38 +53,36 @@ pub fn thinned(strands: &Strands) -> Strands {
     for part in strands.parts() {
         let is_dense = part.name == "hair" || part.name == "beard";
         let (every, factor) = if is_dense { (THINNING, THICKENING) } else { (2, 2.0) };
-        for strand in (part.strands.start as usize..part.strands.end as usize).step_by(every) {
-            let points = strands.strand(strand);
+        let kept: Vec<u32> = part.strands.clone().step_by(every).collect();
+        coarse.append_all(&in_parallel(&kept, |_, &strand| {
+            let points = strands.strand(strand as usize);
             let last = points.len() - 1;
             let count = points.len().min(COARSE_POINTS.max(points.len() / 2));
-            let kept = (0..count).map(|k| points[k * last / (count - 1)]);
-            coarse.push(kept.map(|p| StrandPoint { radius_m: p.radius_m * factor, ..p }));
-        }
+            let kept = (0..count).map(move |k| points[k * last / (count - 1)]);
+            kept.map(move |p| StrandPoint { radius_m: p.radius_m * factor, ..p })
+        }));
         coarse.end_part(&part.name);
     }
     coarse
 }
 
-/// Returns the hair of a figure's head: part `hair`.
-pub fn grow_on_head(body: &HairBody, figure: &Figure) -> Strands {
-    let mut strands = Strands::default();
-    if let Some(style) = style::of_head(figure.hair) {
-        growth::grow_head(body, figure, &style, &mut strands);
-    }
-    strands.end_part("hair");
-    strands
+/// Returns the hair of a figure's head, in groups.
+pub fn grow_on_head(body: &HairBody, figure: &Figure) -> Vec<Strands> {
+    style::of_head(figure.hair).map_or_else(Vec::new, |style| growth::grow_head(body, figure, &style))
 }
 
-/// Appends the hair of a figure's face: parts `beard`, `brows` and `lashes`.
-pub fn grow_on_face(body: &HairBody, figure: &Figure, strands: &mut Strands) {
+/// Returns the hair of a figure's face: parts `beard`, `brows` and `lashes`.
+pub fn grow_on_face(body: &HairBody, figure: &Figure) -> Strands {
+    let mut strands = Strands::default();
     if let Some(style) = style::of_beard(figure.beard) {
-        face_hair::grow_beard(body, figure, &style, strands);
+        face_hair::grow_beard(body, figure, &style, &mut strands);
     }
     strands.end_part("beard");
-    face_hair::grow_brows(body, figure, strands);
+    face_hair::grow_brows(body, figure, &mut strands);
     strands.end_part("brows");
-    face_hair::grow_lashes(body, figure, strands);
+    face_hair::grow_lashes(body, figure, &mut strands);
     strands.end_part("lashes");
+    strands
 }
 
 #[cfg(test)]
