@@ -5,7 +5,7 @@
 
 use glam::{Vec2, Vec3};
 use std::collections::HashMap;
-use std::f32::consts::TAU;
+use std::f32::consts::FRAC_1_SQRT_2;
 
 /// Offsets of vertices that change the shape of the base mesh.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -71,12 +71,11 @@ impl Mask {
     /// Returns the mean strength within a distance of texture coordinates.
     pub fn mean_around(&self, uv: Vec2, radius: f32) -> f32 {
         const RADII: [f32; 3] = [0.35, 0.68, 0.94];
-        const TURNS: u16 = 8;
-        let at =
-            |radius: f32, turn: u16| self.at(uv + radius * Vec2::from_angle(TAU * f32::from(turn) / f32::from(TURNS)));
-        // Each ring stands for a third of the disc
-        let rings = RADII.iter().flat_map(|part| (0..TURNS).map(move |turn| at(part * radius, turn)));
-        rings.sum::<f32>() / (RADII.len() as f32 * f32::from(TURNS))
+        const DIAGONAL: Vec2 = Vec2::splat(FRAC_1_SQRT_2);
+        // Each ring stands for a third of the disc, and has points in eight directions
+        let directions = [Vec2::X, DIAGONAL].into_iter().flat_map(|d| [d, d.perp(), -d, -d.perp()]);
+        let points = RADII.iter().flat_map(|part| directions.clone().map(move |d| uv + part * radius * d));
+        points.map(|point| self.at(point)).sum::<f32>() / (8.0 * RADII.len() as f32)
     }
 }
 

@@ -83,8 +83,8 @@ pub struct Arguments {
     #[arg(long)]
     pub aovs: bool,
     /// Remove the noise with a neural network. Fine detail that looks like noise gets lost: hair, textures, small
-    /// reflections, if the render has few samples. An EXR file holds the noisy picture, too (noisy.R/G/B). With
-    /// --samples, the part only gets the albedo and normals that `merge --denoise` needs.
+    /// reflections, if the render has few samples. An EXR file holds the noisy picture, too (noisy.R/G/B), and the channels
+    /// of --aovs, by which it can be denoised again. With --samples, the part only gets those channels.
     #[arg(long, value_enum, value_name = "HOW", default_value_t)]
     pub denoise: Denoise,
     /// Trace one sample of a pixel again and print every step, instead of a picture.

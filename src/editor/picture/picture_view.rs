@@ -184,7 +184,7 @@ fn denoise_ui(ui: &mut Ui, rendering: &Rendering, out: &mut Vec<Command>) {
     } else if rendering.settings.denoise && rendering.lacks_aovs() {
         ui.label(RichText::new("Not denoised").color(theme::ACCENT)).on_hover_text(
             "The denoiser reads albedo and normals, and the file of this picture has none. Pictures that are exported from \
-             this window have them, those of the command line with --aovs.",
+             this window have them, those of the command line with --aovs or --denoise.",
         );
     }
 }
