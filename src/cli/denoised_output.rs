@@ -44,9 +44,7 @@ pub struct Output<'a> {
     pub picture: Picture,
     /// The light layers that are written.
     pub layers: Vec<(String, LazyPicture<'a>)>,
-    /// Albedo and normals for the denoiser.
-    pub denoiser_aovs: Option<AovPicture>,
-    /// The AOVs that are written.
+    /// The AOVs, which the denoiser reads, and which are written if the file has a place for them.
     pub aovs: Option<AovPicture>,
     /// Settings of the render.
     pub info: PictureInfo,
@@ -64,17 +62,17 @@ pub struct Written {
 impl Output<'_> {
     /// Denoises the picture, if that is requested, and writes it. It runs on the current thread pool.
     pub fn write(self, denoise: Denoise) -> Result<Written, Failure> {
-        let Output { path, size: (width, height), picture, layers, denoiser_aovs, aovs, info } = self;
-        let aovs = aovs.map(|aovs| aovs.resized(width, height));
+        let Output { path, size: (width, height), picture, layers, aovs, info } = self;
         // Denoise in the size of the render
         let started = Instant::now();
         let denoised = match denoise.quality() {
-            Some(quality) => Some((denoised(&picture, &layers, denoiser_aovs, quality)?, quality.label())),
+            Some(quality) => Some((denoised(&picture, &layers, aovs.as_ref(), quality)?, quality.label())),
             None => None,
         };
         let denoise_s = denoised.as_ref().map(|_| started.elapsed().as_secs_f64());
         // Write in the requested size
         let names: Vec<String> = layers.iter().map(|(name, _)| name.clone()).collect();
+        let aovs = aovs.map(|aovs| aovs.into_resized(width, height));
         let picture = picture.into_resized(width, height);
         let layers: Vec<_> = layers.into_iter().map(|(name, layer)| (name, layer.resized(width, height))).collect();
         let noisy = LayeredPicture { picture: &picture, layers: &layers };
@@ -98,12 +96,12 @@ impl Output<'_> {
 fn denoised(
     picture: &Picture,
     layers: &[(String, LazyPicture<'_>)],
-    aovs: Option<AovPicture>,
+    aovs: Option<&AovPicture>,
     quality: Quality,
 ) -> Result<DenoisedLayers, Failure> {
     let aovs = aovs.ok_or_else(|| {
         Failure::Input(anyhow!("the denoiser needs albedo and normals: render the parts with --denoise on"))
     })?;
     let layers: Vec<Picture> = layers.iter().map(|(_, layer)| layer.collect()).collect();
-    denoise::denoise_layers(picture, &layers, &aovs, quality, &|| false).map_err(|_| Failure::Interrupted)
+    denoise::denoise_layers(picture, &layers, aovs, quality, &|| false).map_err(|_| Failure::Interrupted)
 }

@@ -77,8 +77,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         size: (sums.width, sums.height),
         picture: sums.develop(),
         layers: if arguments.layers { sums.lazy_layers() } else { Vec::new() },
-        denoiser_aovs: sums.develop_aovs(),
-        aovs: sums.develop_aovs().filter(|_| is_exr),
+        aovs: sums.develop_aovs(),
         info,
     };
     let Written { picture: written, denoise_s } = picture.write(arguments.denoise)?;

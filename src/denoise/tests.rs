@@ -37,14 +37,14 @@ fn disc(width: u32, height: u32) -> (Picture, AovPicture) {
         aovs.normal[index] = [(x - 30.0) / 32.0, (20.0 - y) / 32.0, z];
         picture.rgb[index] = aovs.albedo[index].map(|albedo| albedo * light * noise.next().unwrap());
     }
-    (picture, aovs)
+    (picture, aovs.seen_directly())
 }
 
 /// Returns a picture of one colour on a wall.
 fn flat(width: u32, height: u32, rgb: [f32; 3]) -> (Picture, AovPicture) {
     let pixels = width as usize * height as usize;
     let (albedo, normal) = (vec![[0.5; 3]; pixels], vec![[0.0, 0.0, 1.0]; pixels]);
-    let aovs = AovPicture { albedo, normal, ..AovPicture::new(width, height) };
+    let aovs = AovPicture { albedo, normal, ..AovPicture::new(width, height) }.seen_directly();
     (Picture { width, height, rgb: vec![rgb; pixels] }, aovs)
 }
 
@@ -174,8 +174,8 @@ fn the_borders_of_a_noisy_picture_are_as_bright_as_its_inside() {
 fn pixels_that_are_no_number_do_not_spread() {
     let (mut picture, mut aovs) = disc(61, 45);
     picture.rgb[500] = [f32::NAN, f32::INFINITY, -1.0];
-    aovs.albedo[700] = [f32::NAN, f32::INFINITY, -1.0];
-    aovs.normal[900] = [f32::NAN, f32::NEG_INFINITY, 7.0];
+    aovs.seen_albedo[700] = [f32::NAN, f32::INFINITY, -1.0];
+    aovs.seen_normal[900] = [f32::NAN, f32::NEG_INFINITY, 7.0];
     let denoised = denoise(&picture, &aovs, Quality::Fast, &never).unwrap();
     assert!(denoised.rgb.iter().flatten().all(|value| value.is_finite() && *value >= 0.0));
 }

@@ -102,7 +102,7 @@ impl<'a> MirroredPicture<'a> {
     /// Returns a picture with a margin of so many pixels; none if it is empty or the sizes differ.
     pub fn new(picture: &'a Picture, aovs: &'a AovPicture, margin: usize) -> Option<Self> {
         let pixels = picture.width as usize * picture.height as usize;
-        let is_whole = [picture.rgb.len(), aovs.albedo.len(), aovs.normal.len()] == [pixels; 3];
+        let is_whole = [picture.rgb.len(), aovs.seen_albedo.len(), aovs.seen_normal.len()] == [pixels; 3];
         (pixels > 0 && is_whole).then_some(MirroredPicture { picture, aovs, margin })
     }
 
@@ -119,8 +119,8 @@ impl<'a> MirroredPicture<'a> {
             for (features, x) in row[LEFT..].iter_mut().zip(columns.clone()) {
                 let index = first + self.pixel_at(x, width);
                 let color = picture.rgb[index].map(|value| transfer::encode(value * scale));
-                let albedo = aovs.albedo[index].map(|value| clamped(value, 0.0));
-                let normal = aovs.normal[index].map(|value| clamped(value, -1.0) * 0.5 + 0.5);
+                let albedo = aovs.seen_albedo[index].map(|value| clamped(value, 0.0));
+                let normal = aovs.seen_normal[index].map(|value| clamped(value, -1.0) * 0.5 + 0.5);
                 *features = Block::ZERO;
                 for (channels, values) in features.0.chunks_exact_mut(3).zip([color, albedo, normal]) {
                     channels.copy_from_slice(&values);

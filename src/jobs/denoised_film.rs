@@ -40,7 +40,7 @@ impl DenoisedFilm {
         if !self.holds(film) {
             *self = DenoisedFilm { film: Some(film.clone()), layers: None };
         }
-        denoise(noisy, &film.denoiser_aovs()?, quality, &|| control.is_cancelled()).ok()
+        denoise(noisy, &film.aovs()?, quality, &|| control.is_cancelled()).ok()
     }
 
     /// Denoises the layers of the film, with the lights as in `scene`, and keeps them.
@@ -54,7 +54,7 @@ impl DenoisedFilm {
         quality: Quality,
         control: &RenderControl,
     ) -> Result<(), Cancelled> {
-        let Some(aovs) = film.denoiser_aovs() else { return Ok(()) };
+        let Some(aovs) = film.aovs() else { return Ok(()) };
         let layers: Vec<Picture> = film.develop_layers(scene).into_iter().map(|(_, layer)| layer).collect();
         let denoised =
             denoise_layers(&film.develop(scene), &layers, &aovs, quality, &|| control.is_cancelled())?.layers;

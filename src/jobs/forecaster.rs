@@ -156,7 +156,7 @@ fn run(pilot: &Pilot, cache: &GeometryCache, control: &Arc<RenderControl>) -> Op
 
 /// Returns the time of the final picture's denoiser for a pixel, seconds. None once cancelled.
 fn measure_denoiser(scene: &Scene, film: &Film, control: &RenderControl) -> Option<f64> {
-    let (picture, aovs) = (film.develop(scene), film.denoiser_aovs()?);
+    let (picture, aovs) = (film.develop(scene), film.aovs()?);
     let started = Instant::now();
     denoise(&picture, &aovs, Quality::Best, &|| control.is_cancelled()).ok()?;
     Some(started.elapsed().as_secs_f64() / picture.rgb.len() as f64)

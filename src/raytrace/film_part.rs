@@ -31,6 +31,10 @@ pub struct PartAovs {
     pub albedo: Vec<PixelSum>,
     /// Sums of the samples' normals.
     pub normal: Vec<PixelSum>,
+    /// Sums of the albedo of what the samples see directly or by mirrors and clear glass.
+    pub seen_albedo: Vec<PixelSum>,
+    /// Sums of the normals, as `seen_albedo`.
+    pub seen_normal: Vec<PixelSum>,
     /// Depth of the picture's first sample, metres; infinite in parts without it.
     pub depth_m: Vec<f32>,
     /// Object of the picture's first sample; none in parts without it.
@@ -60,7 +64,7 @@ impl FilmPart {
     /// Returns the memory of a part with so many layers, bytes.
     pub fn bytes(settings: &Settings, layers: usize) -> u64 {
         let (sum, square) = (size_of::<PixelSum>(), size_of::<ExactSum>());
-        let aovs = if settings.aovs { 2 * sum + size_of::<f32>() + size_of::<u32>() } else { 0 };
+        let aovs = if settings.aovs { 4 * sum + size_of::<f32>() + size_of::<u32>() } else { 0 };
         settings.pixels() * (layers * sum + square + aovs) as u64
     }
 
@@ -77,7 +81,14 @@ impl FilmPart {
             samples: 0,
             layers: film.layers().iter().zip(film.weights(scene)).map(layer).collect(),
             squares: vec![ExactSum::default(); pixels],
-            aovs: aovs.then(|| PartAovs { albedo: sums(), normal: sums(), depth_m, object_id }),
+            aovs: aovs.then(|| PartAovs {
+                albedo: sums(),
+                normal: sums(),
+                seen_albedo: sums(),
+                seen_normal: sums(),
+                depth_m,
+                object_id,
+            }),
             nonfinite: NonFiniteReport::default(),
         }
     }
@@ -185,6 +196,8 @@ impl FilmPart {
             height: self.height,
             albedo: mean(&aovs.albedo),
             normal: mean(&aovs.normal),
+            seen_albedo: mean(&aovs.seen_albedo),
+            seen_normal: mean(&aovs.seen_normal),
             depth_m: aovs.depth_m.clone(),
             object_id: aovs.object_id.clone(),
             relative_variance: (0..self.squares.len()).map(relative_variance).collect(),
@@ -230,15 +243,24 @@ fn shown(rgb: DVec3) -> [f32; 3] {
 
 impl PartAovs {
     fn add(&mut self, sample: &AovPicture) {
-        self.albedo.iter_mut().zip(&sample.albedo).for_each(|(sum, albedo)| add(sum, *albedo));
-        self.normal.iter_mut().zip(&sample.normal).for_each(|(sum, normal)| add(sum, *normal));
+        let AovPicture { albedo, normal, seen_albedo, seen_normal, .. } = sample;
+        for (sums, values) in self.vectors_mut().into_iter().zip([albedo, normal, seen_albedo, seen_normal]) {
+            sums.iter_mut().zip(values).for_each(|(sum, value)| add(sum, *value));
+        }
         self.keep_first(&sample.depth_m, &sample.object_id);
     }
 
     fn merge(&mut self, other: &PartAovs) {
-        merge(&mut self.albedo, &other.albedo);
-        merge(&mut self.normal, &other.normal);
+        let PartAovs { albedo, normal, seen_albedo, seen_normal, .. } = other;
+        for (own, others) in self.vectors_mut().into_iter().zip([albedo, normal, seen_albedo, seen_normal]) {
+            merge(own, others);
+        }
         self.keep_first(&other.depth_m, &other.object_id);
+    }
+
+    /// Returns the sums of albedo and normal, of first hits and then of what is seen.
+    fn vectors_mut(&mut self) -> [&mut Vec<PixelSum>; 4] {
+        [&mut self.albedo, &mut self.normal, &mut self.seen_albedo, &mut self.seen_normal]
     }
 
     /// Takes over depth and object where the picture's first sample has hit something.

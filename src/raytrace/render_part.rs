@@ -118,7 +118,7 @@ mod tests {
         assert!(difference < 13.0 * 8.0 * f32::EPSILON, "{difference}");
         // The denoiser knows the noise of both; the scatter in a part does not see how samples are stratified
         let noise = |aovs: AovPicture| aovs.relative_variance.iter().map(|variance| variance.sqrt()).sum::<f32>();
-        let ratio = noise(whole.develop_aovs().unwrap()) / noise(film.denoiser_aovs().unwrap());
+        let ratio = noise(whole.develop_aovs().unwrap()) / noise(film.aovs().unwrap());
         assert!((1.0..2.0).contains(&ratio), "{ratio}");
         let few = part(&prepared, &scene, &settings, 0..7).develop_aovs().unwrap();
         assert!(few.relative_variance.iter().all(|variance| variance.is_infinite()));
@@ -127,6 +127,7 @@ mod tests {
         assert_eq!((own.depth_m, own.object_id), (films.depth_m, films.object_id));
         let aov = |rgb| Picture { width: 70, height: 40, rgb };
         assert!(relative_difference(&aov(own.albedo), &aov(films.albedo)) < 13.0 * f32::EPSILON);
+        assert!(relative_difference(&aov(own.seen_albedo), &aov(films.seen_albedo)) < 13.0 * f32::EPSILON);
         for ((name, layer), (film_name, film_layer)) in whole.lazy_layers().iter().zip(film.develop_layers(&scene)) {
             assert_eq!(*name, film_name);
             assert!(relative_difference(&layer.collect(), &film_layer) < 1e-4, "{name}");

@@ -90,7 +90,7 @@ pub fn small_picture(
     let prepared = prepare_for(scene, assets, purpose, cache)?;
     let film = render_all_passes(&prepared, &settings, control);
     let picture = film.develop(scene);
-    let denoised = match film.denoiser_aovs() {
+    let denoised = match film.aovs() {
         Some(aovs) => denoise::denoise(&picture, &aovs, Quality::Best, &|| control.is_cancelled()).ok(),
         None => Some(picture),
     };

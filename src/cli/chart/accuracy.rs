@@ -168,7 +168,7 @@ impl StudioStudy<'_> {
         let started = Instant::now();
         let picture = pool.install(|| {
             let film = render_all_passes(&self.scene, &settings, &control);
-            let aovs = film.denoiser_aovs()?;
+            let aovs = film.aovs()?;
             denoise(&film.develop(&self.loaded.scene), &aovs, Quality::Best, &|| false).ok()
         });
         let picture =

@@ -79,7 +79,8 @@ pub struct Arguments {
     pub layers: bool,
     /// Write what each pixel shows beside its light (exr only): albedo.R/G/B, normal.X/Y/Z (world), Z (metres along the
     /// view axis, infinite where there is nothing), id (0 nothing, 1 the room, then the objects in the file's order), and
-    /// from 8 samples on RelativeVariance.Y (of the mean luminance, over its square).
+    /// from 8 samples on RelativeVariance.Y (of the mean luminance, over its square); what mirrors and clear glass show
+    /// in Denoising Albedo.R/G/B and Denoising Normal.X/Y/Z.
     #[arg(long)]
     pub aovs: bool,
     /// Remove the noise with a neural network. Fine detail that looks like noise gets lost: hair, textures, small

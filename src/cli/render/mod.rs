@@ -15,7 +15,7 @@ pub use arguments::Arguments;
 use super::denoised_output::{Denoise, Output, Written};
 use super::failure::Failure;
 use super::{input, picture_output, terminal, zbuffer};
-use crate::io::{self, LayeredPicture, Loaded, PictureFormat, PictureInfo};
+use crate::io::{self, LayeredPicture, Loaded, PictureInfo};
 use crate::jobs::{self, Bytes, RenderInput, RenderMemory, RenderMonitor, RenderStage, Rendered};
 use crate::raytrace::{Film, GeometryCache, NonFiniteReport, RenderControl, RenderScene, Settings};
 use anyhow::anyhow;
@@ -242,15 +242,12 @@ fn draw_zbuffer(
 
 /// Writes the picture in the requested size, for a film of any size.
 fn write(arguments: &Arguments, loaded: &Loaded, film: &Film, settings: &Settings) -> Result<Written, Failure> {
-    let path = arguments.output();
-    let is_exr = PictureFormat::of(path)? == PictureFormat::Exr;
     let output = Output {
-        path,
+        path: arguments.output(),
         size: (settings.width, settings.height),
         picture: film.develop(&loaded.scene),
         layers: if arguments.layers { film.lazy_layers(&loaded.scene) } else { Vec::new() },
-        denoiser_aovs: film.denoiser_aovs(),
-        aovs: film.aovs().filter(|_| is_exr),
+        aovs: film.aovs(),
         info: PictureInfo::new(&loaded.scene, &film.method(), film.spp(), arguments.seed.into()),
     };
     output.write(arguments.denoise)

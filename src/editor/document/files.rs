@@ -254,6 +254,6 @@ fn denoised_layers(
     quality: Quality,
 ) -> Option<Vec<(String, LazyPicture<'static>)>> {
     let (names, layers): (Vec<String>, Vec<Picture>) = film.develop_layers(scene).into_iter().unzip();
-    let denoised = denoise_layers(noisy, &layers, &film.denoiser_aovs()?, quality, &|| false).ok()?;
+    let denoised = denoise_layers(noisy, &layers, &film.aovs()?, quality, &|| false).ok()?;
     Some(names.into_iter().zip(denoised.layers.into_iter().map(LazyPicture::from)).collect())
 }

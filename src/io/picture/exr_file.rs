@@ -117,13 +117,26 @@ pub(super) fn part<'a>(
 /// `RelativeVariance.R`.
 pub(super) const VARIANCE_CHANNEL: &str = "RelativeVariance.Y";
 
+/// Channels of albedo and normal, of the first hits and of what is seen by mirrors and clear glass: the names that Blender
+/// gives to the latter.
+pub(super) const ALBEDO_CHANNELS: [&str; 3] = ["albedo.R", "albedo.G", "albedo.B"];
+pub(super) const NORMAL_CHANNELS: [&str; 3] = ["normal.X", "normal.Y", "normal.Z"];
+pub(super) const SEEN_ALBEDO_CHANNELS: [&str; 3] = ["Denoising Albedo.R", "Denoising Albedo.G", "Denoising Albedo.B"];
+pub(super) const SEEN_NORMAL_CHANNELS: [&str; 3] = ["Denoising Normal.X", "Denoising Normal.Y", "Denoising Normal.Z"];
+
 /// Returns the channels of the AOVs, with the names of the OpenEXR conventions: normals in world space, `Z` in metres
-/// along the view axis, `id` as unsigned integers, and the variance where it is known.
-fn aov_channels(aovs: &AovPicture) -> Vec<ExrChannel<'_>> {
+/// along the view axis, `id` as unsigned integers, and the variance where it is known. What is seen has channels of its
+/// own where mirrors or clear glass show it.
+fn aov_channels<'a>(aovs: &'a AovPicture) -> Vec<ExrChannel<'a>> {
     let width = aovs.width as usize;
-    let albedo = vector_channels(["albedo.R", "albedo.G", "albedo.B"], move |x, y| aovs.albedo[y * width + x]);
-    let mut all = Vec::from(albedo);
-    all.extend(vector_channels(["normal.X", "normal.Y", "normal.Z"], move |x, y| aovs.normal[y * width + x]));
+    let vectors =
+        |names, values: &'a [[f32; 3]]| vector_channels(names, move |x: usize, y: usize| values[y * width + x]);
+    let mut all = Vec::from(vectors(ALBEDO_CHANNELS, &aovs.albedo));
+    all.extend(vectors(NORMAL_CHANNELS, &aovs.normal));
+    if aovs.has_mirrors() {
+        all.extend(vectors(SEEN_ALBEDO_CHANNELS, &aovs.seen_albedo));
+        all.extend(vectors(SEEN_NORMAL_CHANNELS, &aovs.seen_normal));
+    }
     all.push(AnyChannel::new("Z", ChannelSamples::f32(move |x, y| aovs.depth_m[y * width + x])));
     all.push(AnyChannel::new("id", ChannelSamples::u32(move |x, y| aovs.object_id[y * width + x])));
     if aovs.relative_variance.iter().any(|variance| variance.is_finite()) {

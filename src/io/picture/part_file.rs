@@ -7,7 +7,10 @@
 
 use super::PictureInfo;
 use super::channel_samples::{ChannelSamples, ExrChannel, ExrPart};
-use super::exr_file::{SHOWN_CHANNELS, STUDIO_FILE, WHOLE, checked_size, part, studio_text, text, vector_channels};
+use super::exr_file::{
+    ALBEDO_CHANNELS, NORMAL_CHANNELS, SEEN_ALBEDO_CHANNELS, SEEN_NORMAL_CHANNELS, SHOWN_CHANNELS, STUDIO_FILE, WHOLE,
+    checked_size, part, studio_text, text, vector_channels,
+};
 use super::exr_header::{Header, read_parts};
 use super::picture_file::{Content, PictureFile};
 use crate::io::checkpoint::RenderId;
@@ -87,8 +90,12 @@ fn layer_part(index: usize, layer: &PartLayer, size: (usize, usize)) -> ExrPart<
 }
 
 fn aov_channels(aovs: &PartAovs, width: usize) -> Vec<ExrChannel<'_>> {
-    let mut all: Vec<_> = pixel_sum_channels(["albedo.R", "albedo.G", "albedo.B"], width, &aovs.albedo).collect();
-    all.extend(pixel_sum_channels(["normal.X", "normal.Y", "normal.Z"], width, &aovs.normal));
+    let mut all: Vec<_> = pixel_sum_channels(ALBEDO_CHANNELS, width, &aovs.albedo).collect();
+    all.extend(pixel_sum_channels(NORMAL_CHANNELS, width, &aovs.normal));
+    if (&aovs.seen_albedo, &aovs.seen_normal) != (&aovs.albedo, &aovs.normal) {
+        all.extend(pixel_sum_channels(SEEN_ALBEDO_CHANNELS, width, &aovs.seen_albedo));
+        all.extend(pixel_sum_channels(SEEN_NORMAL_CHANNELS, width, &aovs.seen_normal));
+    }
     all.push(AnyChannel::new("Z", ChannelSamples::f32(move |x, y| aovs.depth_m[y * width + x])));
     all.push(AnyChannel::new("id", ChannelSamples::u32(move |x, y| aovs.object_id[y * width + x])));
     all
@@ -170,9 +177,13 @@ impl Header<'_> {
             (Some(FlatSamples::F32(depth)), Some(FlatSamples::U32(id))) => (depth.clone(), id.clone()),
             _ => return Err("depth or object is missing".to_owned()),
         };
-        let albedo = self.vector_sums(["albedo.R", "albedo.G", "albedo.B"])?;
-        let normal = self.vector_sums(["normal.X", "normal.Y", "normal.Z"])?;
-        Ok(PartAovs { albedo, normal, depth_m, object_id })
+        let (albedo, normal) = (self.vector_sums(ALBEDO_CHANNELS)?, self.vector_sums(NORMAL_CHANNELS)?);
+        let (seen_albedo, seen_normal) = if self.channel(&word_name(SEEN_ALBEDO_CHANNELS[0], 0)).is_some() {
+            (self.vector_sums(SEEN_ALBEDO_CHANNELS)?, self.vector_sums(SEEN_NORMAL_CHANNELS)?)
+        } else {
+            (albedo.clone(), normal.clone())
+        };
+        Ok(PartAovs { albedo, normal, seen_albedo, seen_normal, depth_m, object_id })
     }
 
     fn vector_sums(&self, names: [&str; 3]) -> Result<Vec<PixelSum>, String> {

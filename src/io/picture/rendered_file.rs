@@ -1,7 +1,10 @@
 //! Rendered pictures that are read back from EXR files, with their lights and the studio.
 
 use super::PictureInfo;
-use super::exr_file::{NOISY_CHANNELS, SHOWN_CHANNELS, VARIANCE_CHANNEL, checked_size, is_part_name, text};
+use super::exr_file::{
+    ALBEDO_CHANNELS, NOISY_CHANNELS, NORMAL_CHANNELS, SEEN_ALBEDO_CHANNELS, SEEN_NORMAL_CHANNELS, SHOWN_CHANNELS,
+    VARIANCE_CHANNEL, checked_size, is_part_name, text,
+};
 use super::exr_header::{Header, ReadExrPart, read_parts};
 use crate::io::error::{Problem, reason};
 use crate::io::kept_picture::KeptPicture;
@@ -103,10 +106,14 @@ fn aovs(part: &ReadExrPart) -> Result<Option<AovPicture>, String> {
     else {
         return Ok(None);
     };
-    let albedo = vectors(part, ["albedo.R", "albedo.G", "albedo.B"]).ok_or("the albedo is missing")?;
-    let normal = vectors(part, ["normal.X", "normal.Y", "normal.Z"]).ok_or("the normals are missing")?;
+    let albedo = vectors(part, ALBEDO_CHANNELS).ok_or("the albedo is missing")?;
+    let normal = vectors(part, NORMAL_CHANNELS).ok_or("the normals are missing")?;
     let (depth_m, object_id) = (depth_m.clone(), object_id.clone());
-    let mut aovs = AovPicture { albedo, normal, depth_m, object_id, ..AovPicture::new(width, height) };
+    let aovs = AovPicture { albedo, normal, depth_m, object_id, ..AovPicture::new(width, height) };
+    let mut aovs = match (vectors(part, SEEN_ALBEDO_CHANNELS), vectors(part, SEEN_NORMAL_CHANNELS)) {
+        (Some(seen_albedo), Some(seen_normal)) => AovPicture { seen_albedo, seen_normal, ..aovs },
+        _ => aovs.seen_directly(),
+    };
     if let Some(FlatSamples::F32(variance)) = header.channel(VARIANCE_CHANNEL) {
         let known = |&variance: &f32| if variance >= 0.0 { variance } else { f32::INFINITY };
         aovs.relative_variance = variance.iter().map(known).collect();
@@ -165,6 +172,7 @@ mod tests {
         assert!(findings.is_empty(), "{findings:?}");
         assert_eq!((&*read.scene, read.film.spp(), read.settings.seed), (&scene, 4, 7));
         assert_eq!((read.film.method(), read.film.aovs()), (film.method(), film.aovs()));
+        assert!(film.aovs().is_some_and(|aovs| aovs.has_mirrors()), "the eyes are seen through their corneas");
         assert_same(&read.film.develop(&scene), &film.develop(&scene));
         // As a new development of the film: a light dimmed, one in another colour, one off
         let mut mixed = scene.clone();
@@ -179,7 +187,7 @@ mod tests {
     fn the_noise_of_a_picture_comes_back_and_the_denoiser_keeps_what_it_kept() {
         let (film, scene, bytes) = rendered_with(0, 9, |_| {});
         let read = decode(&bytes).unwrap().picture.film;
-        let [ours, theirs] = [&read, &film].map(|film| film.denoiser_aovs().unwrap().relative_variance);
+        let [ours, theirs] = [&read, &film].map(|film| film.aovs().unwrap().relative_variance);
         assert!(theirs.iter().all(|variance| variance.is_finite()));
         // Negative samples of skin are cut off in a file
         let differ = ours.iter().zip(&theirs).filter(|(a, b)| (*a - *b).abs() > 1e-3 * b.max(1e-6)).count();

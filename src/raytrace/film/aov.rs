@@ -64,12 +64,11 @@ impl AovTile {
         self.seen_normal[pixel] += surface.normal;
     }
 
-    /// Sets a pixel to `samples` times the values of a picture's pixel. What mirrors and clear glass show is not known:
-    /// they count as what is seen.
+    /// Sets a pixel to `samples` times the values of a picture's pixel.
     pub fn set(&mut self, pixel: usize, samples: f32, picture: &AovPicture, at: usize) {
-        let [albedo, normal] = [picture.albedo[at], picture.normal[at]].map(|value| Vec3::from(value) * samples);
-        (self.albedo[pixel], self.normal[pixel]) = (albedo, normal);
-        (self.seen_albedo[pixel], self.seen_normal[pixel]) = (albedo, normal);
+        let sum = |values: &[[f32; 3]]| Vec3::from(values[at]) * samples;
+        (self.albedo[pixel], self.normal[pixel]) = (sum(&picture.albedo), sum(&picture.normal));
+        (self.seen_albedo[pixel], self.seen_normal[pixel]) = (sum(&picture.seen_albedo), sum(&picture.seen_normal));
         (self.depth_m[pixel], self.object_id[pixel]) = (picture.depth_m[at], picture.object_id[at]);
     }
 
@@ -115,15 +114,10 @@ impl AovTile {
     pub fn write(&self, pixel: usize, per_sample: f32, picture: &mut AovPicture, at: usize) {
         picture.albedo[at] = self.albedo(pixel, per_sample);
         picture.normal[at] = (self.normal[pixel] * per_sample).to_array();
+        picture.seen_albedo[at] = (self.seen_albedo[pixel] * per_sample).to_array();
+        picture.seen_normal[at] = (self.seen_normal[pixel] * per_sample).to_array();
         picture.depth_m[at] = self.depth_m[pixel];
         picture.object_id[at] = self.object_id[pixel];
-    }
-
-    /// As [`AovTile::write`], but albedo and normal of what is seen by mirrors and clear glass.
-    pub fn write_seen(&self, pixel: usize, per_sample: f32, picture: &mut AovPicture, at: usize) {
-        self.write(pixel, per_sample, picture, at);
-        picture.albedo[at] = (self.seen_albedo[pixel] * per_sample).to_array();
-        picture.normal[at] = (self.seen_normal[pixel] * per_sample).to_array();
     }
 }
 
@@ -270,36 +264,31 @@ mod tests {
         assert!((aovs.depth_m[centre] - distance).abs() < 0.01, "{} for {distance}", aovs.depth_m[centre]);
     }
 
-    fn denoiser_aovs(scene: &Scene, method: Method) -> (AovPicture, AovPicture) {
-        let settings = Settings { width: WIDTH, height: HEIGHT, method, spp: 4, aovs: true, ..Settings::default() };
-        let prepared = prepare(scene, &Assets::default()).unwrap();
-        let film = render(&prepared, &settings, &RenderControl::new(), &mut |_| ControlFlow::Continue(()));
-        (film.denoiser_aovs().unwrap(), film.aovs().unwrap())
-    }
-
     #[test]
-    fn without_mirrors_and_glass_the_denoiser_reads_the_first_hits() {
+    fn without_mirrors_and_glass_the_first_hits_are_seen() {
         for method in [Method::Path, Method::Direct, Method::Whitted] {
-            let (seen, first) = denoiser_aovs(&still_life(), method);
-            assert_eq!(seen, first, "{method:?}");
+            let settings = Settings { width: WIDTH, height: HEIGHT, method, spp: 4, aovs: true, ..Settings::default() };
+            assert!(!aovs(&still_life(), &settings).0.has_mirrors(), "{method:?}");
         }
     }
 
     #[test]
-    fn the_denoiser_reads_what_a_mirror_shows() {
+    fn what_a_mirror_shows_is_seen() {
         // The floor is a mirror, in which the camera sees a ceiling.
         let mut scene = still_life();
         scene.objects.truncate(1);
         scene.objects[0].material =
             Material { base_color: [0.5; 3], metallic: 1.0, roughness: 0.0, ..Material::default() };
         scene.objects.push(object(5, Shape::Plane { width_m: 80.0, depth_m: 80.0 }, Vec3::Y * 5.0, [0.2, 0.4, 0.6]));
-        let (seen, first) = denoiser_aovs(&scene, Method::Path);
+        let settings = Settings { width: WIDTH, height: HEIGHT, spp: 4, aovs: true, ..Settings::default() };
+        let (aovs, _) = aovs(&scene, &settings);
+        assert!(aovs.has_mirrors());
         let centre = (HEIGHT / 2 * WIDTH + WIDTH / 2) as usize;
-        assert!((Vec3::from(first.normal[centre]) - Vec3::Y).length() < 1e-5, "the mirror's own");
+        assert!((Vec3::from(aovs.normal[centre]) - Vec3::Y).length() < 1e-5, "the mirror's own");
         // Schlick: 0.5 head-on, and 0.5 + 0.5 (1 - cos)^5 under the angle of the camera, here 0.56.
         let towards = scene.camera.position.normalize();
         let reflectance = 0.5 + 0.5 * (1.0 - towards.y).powi(5);
-        let (albedo, normal) = (Vec3::from(seen.albedo[centre]), Vec3::from(seen.normal[centre]));
+        let (albedo, normal) = (Vec3::from(aovs.seen_albedo[centre]), Vec3::from(aovs.seen_normal[centre]));
         assert!((albedo / (reflectance * Vec3::new(0.2, 0.4, 0.6)) - 1.0).abs().max_element() < 0.02, "{albedo}");
         assert!((normal + reflectance * Vec3::Y).length() < 0.02, "{normal}");
     }

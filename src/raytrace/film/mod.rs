@@ -233,25 +233,15 @@ impl Film {
         self.tiles.iter().all(|tile| tile.aovs.is_some())
     }
 
-    /// The AOVs; none unless [`Settings::aovs`] asked for them.
+    /// Returns the AOVs; none unless [`Settings::aovs`] asked for them.
     pub fn aovs(&self) -> Option<AovPicture> {
-        self.aovs_by(AovTile::write)
-    }
-
-    /// The AOVs for the denoiser, which have albedo and normal of what mirrors and clear glass show; none unless
-    /// [`Settings::aovs`] asked for them.
-    pub fn denoiser_aovs(&self) -> Option<AovPicture> {
-        self.aovs_by(AovTile::write_seen)
-    }
-
-    fn aovs_by(&self, write: fn(&AovTile, usize, f32, &mut AovPicture, usize)) -> Option<AovPicture> {
         let mut picture = AovPicture::new(self.width, self.height);
         for tile in &self.tiles {
             let aovs = tile.aovs.as_ref()?;
             for pixel in 0..tile.pixels() {
                 let (x, y) = tile.position(pixel);
                 let at = y as usize * self.width as usize + x as usize;
-                write(aovs, pixel, tile.per_sample(), &mut picture, at);
+                aovs.write(pixel, tile.per_sample(), &mut picture, at);
                 picture.relative_variance[at] = tile.blocks.relative_variance(pixel);
             }
         }
