@@ -1,7 +1,8 @@
 //! The reflection model of Whitted's method: a diffuse base, a Phong lobe or specular reflection, clear glass.
 //!
-//! The exponent is 2 / alpha2 - 2, which matches the width of the Beckmann and GGX lobes at their centre; the colour is
-//! the reflectance at normal incidence. Base and lobe do not share energy, unlike in [`super::Bsdf`].
+//! The exponent is 0.5 / alpha2 - 0.5, a quarter of that of Blinn-Phong, as the angle to the mirror direction is twice
+//! that of the half vector: the lobe has the width of Beckmann's at its centre. The colour is the reflectance at normal
+//! incidence. Base and lobe do not share energy, unlike in [`super::Bsdf`].
 
 use super::ggx;
 use super::material_point::MaterialPoint;
@@ -39,7 +40,7 @@ impl MaterialPoint<'_> {
         Phong {
             albedo: base * ((1.0 - self.metallic) * opaque * (1.0 - far_side)),
             glossy,
-            exponent: (2.0 / (alpha * alpha) - 2.0).max(0.0),
+            exponent: (0.5 / (alpha * alpha) - 0.5).max(0.0),
             specular,
             transmission: self.transmission,
             base_color: base,
@@ -58,5 +59,36 @@ impl Phong {
         let mirrored = 2.0 * light_dir.dot(normal) * normal - light_dir;
         let lobe = mirrored.dot(view_dir).max(0.0).powf(self.exponent) * (self.exponent + 2.0) / (2.0 * PI);
         self.albedo / PI + self.glossy * lobe
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{TextureFactors, TracedMaterial};
+    use super::*;
+    use crate::scene::Material;
+
+    #[test]
+    fn the_highlight_has_the_width_and_the_height_of_beckmanns_at_its_centre_and_no_more_energy() {
+        let metal = Material { metallic: 1.0, base_color: [1.0; 3], roughness: 0.4, ..Material::default() };
+        let alpha = 0.4_f32 * 0.4;
+        let traced = TracedMaterial::new(&metal);
+        let phong = MaterialPoint::new(&traced, TextureFactors::ONE).phong();
+        let lobe = |angle: f32| phong.eval(Vec3::new(angle.sin(), 0.0, angle.cos()), Vec3::Z, Vec3::Z).x;
+        // Beckmann's distribution over four, head-on; its half vector has half of the angle
+        let beckmann = |angle: f32| (-((0.5 * angle).tan() / alpha).powi(2)).exp() / (4.0 * PI * alpha * alpha);
+        for angle in [0.0, 0.05, 0.1, 0.2] {
+            let (ours, right) = (lobe(angle), beckmann(angle));
+            assert!((ours / right - 1.0).abs() < 0.1, "{ours} for {right} at {angle}");
+        }
+        // The directional albedo head-on: the integral over the hemisphere of lobe times cosine
+        let steps = 2000;
+        let width = 0.5 * PI / steps as f32;
+        let ring = |i: i32| {
+            let angle = (i as f32 + 0.5) * width;
+            lobe(angle) * angle.cos() * angle.sin() * 2.0 * PI * width
+        };
+        let albedo: f32 = (0..steps).map(ring).sum();
+        assert!((albedo - 1.0).abs() < 1e-3, "{albedo}");
     }
 }
