@@ -5,6 +5,7 @@
 //! medium. Schmidt and Budge 2002, "Simple Nested Dielectrics in Ray Traced Images", give bodies priorities instead.
 
 use super::bsdf::{DielectricInterface, TracedMaterial};
+use super::geometry::SurfaceInteraction;
 use glam::Vec3;
 
 /// Capacity of the stack; a body beyond it replaces the innermost one.
@@ -56,6 +57,20 @@ impl MediumStack {
         self.bodies.copy_within(at + 1..count, at);
         self.count -= 1;
         true
+    }
+
+    /// Returns the transmittance over the distance to a surface, metres (Beer-Lambert law). A path that arrives at the
+    /// inner side of a body and is in no medium started inside of that body.
+    pub fn transmittance_to(
+        &self,
+        materials: &[TracedMaterial],
+        surface: &SurfaceInteraction,
+        outside: bool,
+        distance: f32,
+    ) -> Vec3 {
+        let material = &materials[surface.material as usize];
+        let starts_inside = self.innermost().is_none() && material.transmits() && !outside && !surface.is_thin;
+        if starts_inside { material.transmittance(distance) } else { self.transmittance(materials, distance) }
     }
 
     /// Returns the transmittance over a distance in the current medium, metres (Beer-Lambert law); 1 in air.

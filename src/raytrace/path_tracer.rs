@@ -248,13 +248,7 @@ impl<'a> PathTracer<'a> {
 
             // Absorb light along the ray (Beer-Lambert)
             if scene.plan().refraction {
-                let starts_inside =
-                    path.media.innermost().is_none() && material.transmits() && !outside && !surface.is_thin;
-                path.throughput *= if starts_inside {
-                    material.transmittance(distance)
-                } else {
-                    path.media.transmittance(&scene.materials, distance)
-                };
+                path.throughput *= path.media.transmittance_to(&scene.materials, &surface, outside, distance);
             }
             sink.record(|| {
                 let (object, part) = scene.object_and_part(hit);

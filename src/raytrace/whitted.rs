@@ -67,7 +67,9 @@ fn trace_ray(
     }
 
     // Absorb light along the ray (Beer-Lambert) and add the surface's emission
-    throughput *= media.transmittance(&scene.materials, distance);
+    let view_dir = -ray.direction;
+    let outside = view_dir.dot(surface.geometric_normal) >= 0.0;
+    throughput *= media.transmittance_to(&scene.materials, &surface, outside, distance);
     sink.record(|| {
         let (object, part) = scene.object_and_part(&hit);
         let (position, normal, material) = (surface.position, surface.normal, surface.material);
@@ -90,15 +92,13 @@ fn trace_ray(
 
     // Add direct and ambient light on fibres, from all sides
     if surface.strand.is_some() && material.fibre().is_some() {
-        let bsdf = scene.bsdf(scene.material_of(&surface), &surface, -ray.direction, &media, Polarisation::NONE);
+        let bsdf = scene.bsdf(scene.material_of(&surface), &surface, view_dir, &media, Polarisation::NONE);
         add_direct_light(caster, &surface, &media, throughput, sink, |light_dir| bsdf.eval(light_dir).0);
         add_ambient_light(caster, throughput * scene.albedo(&surface), sink);
         return;
     }
 
     // Add direct and ambient light
-    let view_dir = -ray.direction;
-    let outside = view_dir.dot(surface.geometric_normal) >= 0.0;
     let side = if outside { 1.0 } else { -1.0 };
     let smooth = surface.normal * side;
     let normal = if smooth.dot(view_dir) > 0.0 { smooth } else { surface.geometric_normal * side };
@@ -127,13 +127,13 @@ fn trace_ray(
         spawn(ray.direction, throughput * phong.transmission_color(true) * transmittance, media);
         return;
     }
-    let eta = media.interface(&scene.materials, surface.material, outside).eta;
-    let reflectance = fresnel::dielectric(view_dir.dot(normal), eta);
+    let interface = media.interface(&scene.materials, surface.material, outside);
+    let reflectance = fresnel::dielectric(view_dir.dot(normal), interface.eta);
     spawn(mirrored, throughput * (phong.specular + phong.transmission * reflectance), media);
-    if let Some(refracted) = fresnel::refract_about(view_dir, normal, eta) {
+    if let Some(refracted) = fresnel::refract_about(view_dir, normal, interface.eta) {
         let mut media_beyond = media;
         media_beyond.cross(surface.material, outside);
-        let transmitted = phong.transmission_color(false) * ((1.0 - reflectance) / (eta * eta));
+        let transmitted = phong.transmission_color(false) * ((1.0 - reflectance) * interface.radiance_scale());
         spawn(refracted, throughput * transmitted, media_beyond);
     }
 }
@@ -176,5 +176,45 @@ fn add_ambient_light(caster: &RayCaster<'_>, reflected: Vec3, sink: &mut impl Ra
         if let Some(luminance) = light.surround_luminance() {
             sink.add(light.layer, reflected * light.tint * luminance);
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::raytrace::test_pictures::{blocks, mean};
+    use crate::raytrace::{Method, RenderControl, Settings, prepare, render};
+    use crate::scene::{Aim, Assets, Camera, Material, Object, ObjectId, Scene, Shape, Transform};
+    use glam::Vec3;
+    use std::ops::ControlFlow;
+
+    #[test]
+    fn a_camera_inside_of_glass_sees_a_wall_as_bright_as_the_glass_transmits_it() {
+        let wall = Material { base_color: [0.0; 3], emission_cd_m2: [1000.0; 3], ..Material::default() };
+        let glass =
+            Material { base_color: [1.0; 3], transmission: 1.0, absorption_per_m: [0.5; 3], ..Material::default() };
+        let body = |id, z: f32, size_m, material| Object {
+            id: ObjectId(id),
+            transform: Transform::at(Vec3::Z * z),
+            material,
+            ..Object::new(format!("Body {id}"), Shape::Box { size_m })
+        };
+        let camera = Camera {
+            position: Vec3::ZERO,
+            aim: Aim::Point(Vec3::NEG_Z),
+            focal_length_mm: 200.0,
+            ..Camera::default()
+        };
+        let brightness = |objects| {
+            let scene = Scene { objects, camera: camera.clone(), ..Scene::default() };
+            let settings = Settings { width: 6, height: 4, spp: 4, method: Method::Whitted, ..Settings::default() };
+            let prepared = prepare(&scene, &Assets::default()).unwrap();
+            let film = render(&prepared, &settings, &RenderControl::new(), &mut |_| ControlFlow::Continue(()));
+            mean(&blocks(&film.develop(&scene), 1))
+        };
+        let wall = body(1, -3.0, Vec3::new(9.0, 9.0, 0.1), wall);
+        // The face is one metre away, and reflects 4 %: what comes back from the far side is a thousandth
+        let ratio = brightness(vec![wall.clone(), body(2, 0.0, Vec3::splat(2.0), glass)]) / brightness(vec![wall]);
+        let right = 0.96 * (-0.5_f64).exp();
+        assert!((ratio / right - 1.0).abs() < 0.01, "{ratio} for {right}");
     }
 }

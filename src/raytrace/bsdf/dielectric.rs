@@ -17,6 +17,14 @@ pub struct DielectricInterface {
     pub starts_inside: bool,
 }
 
+impl DielectricInterface {
+    /// Returns the factor on radiance that passes the interface: 1 / eta2 (Veach 1997, section 5.2), or 1 where the first
+    /// medium is unknown.
+    pub fn radiance_scale(&self) -> f32 {
+        if self.starts_inside { 1.0 } else { 1.0 / (self.eta * self.eta) }
+    }
+}
+
 /// The boundary at a clear surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Boundary {
@@ -78,8 +86,7 @@ impl DielectricLobe {
         let direction = refracted
             .filter(|direction| direction.dot(geometry.geometric_normal) < 0.0)
             .or_else(|| fresnel::refract_about(wo, geometry.geometric_normal, eta))?;
-        // Radiance is scaled by 1 / eta2 (Veach 1997, section 5.2)
-        let scale = if interface.starts_inside { 1.0 } else { 1.0 / (eta * eta) };
+        let scale = interface.radiance_scale();
         Some(BsdfSample {
             weight: transmission_tint(self.base_color, false) * scale,
             eta_scale: scale,

@@ -130,10 +130,9 @@ impl Frost {
     }
 }
 
-/// Returns the factor on radiance that passes an interface.
+/// Returns the factor on radiance that passes a frosted interface.
 pub fn radiance_scale(interface: DielectricInterface) -> f32 {
-    let eta = with_contrast(interface.eta);
-    if interface.starts_inside { 1.0 } else { 1.0 / (eta * eta) }
+    DielectricInterface { eta: with_contrast(interface.eta), ..interface }.radiance_scale()
 }
 
 /// Returns a relative index of refraction that differs from 1.

@@ -160,16 +160,17 @@ impl<'a> PhotonTracer<'a> {
             }
 
             // Update the throughput: unlike radiance, flux does not scale with the squared index of refraction
+            let from_outside = wo.dot(surface.geometric_normal) >= 0.0;
             throughput *= sample.weight / sample.eta_scale;
             if !sample.is_undeviated {
                 specular_depth += 1;
-                throughput *= shading_correction(wo, &sample, surface.geometric_normal);
+                let eta = media.interface(&scene.materials, surface.material, from_outside).eta;
+                throughput *= shading_correction(wo, &sample, eta, surface.geometric_normal);
             }
             let survival = survival_probability(throughput, 1.0, depth);
             if !survives(&mut throughput, survival, roulette) {
                 return;
             }
-            let from_outside = wo.dot(surface.geometric_normal) >= 0.0;
             if !sample.is_undeviated {
                 path.scatter(&surface, from_outside, sample.is_transmission);
             }
@@ -213,13 +214,14 @@ impl<'a> PhotonTracer<'a> {
 }
 
 /// Returns the factor of a photon's flux at a surface with an interpolated normal, by which photons agree with paths from
-/// the camera (Veach 1997, section 5.3). `wo` is the direction towards the light, the sample's the one onwards. The normal
-/// is the one about which light was mirrored or refracted, which follows from the two: the geometric one where the
-/// interpolated one would have sent it to the wrong side.
-pub fn shading_correction(wo: Vec3, sample: &BsdfSample, geometric_normal: Vec3) -> f32 {
+/// the camera (Veach 1997, section 5.3). `wo` is the direction towards the light, the sample's the one onwards; `eta` is the
+/// index of the transmitted side over that of the side of `wo`. The normal is the one about which light was mirrored or
+/// refracted, which follows from these: the geometric one where the interpolated one would have sent it to the wrong
+/// side.
+pub fn shading_correction(wo: Vec3, sample: &BsdfSample, eta: f32, geometric_normal: Vec3) -> f32 {
     let wi = sample.direction;
     let (wo_geometric, wi_geometric) = (wo.dot(geometric_normal).abs(), wi.dot(geometric_normal).abs());
-    let normal = if sample.is_transmission { wo + wi / sample.eta_scale.sqrt() } else { wo + wi };
+    let normal = if sample.is_transmission { wo + wi * eta } else { wo + wi };
     // Where both sides have next to the same index, light goes on as it came
     if sample.is_transmission && normal.length_squared() < UNDEVIATED {
         return 1.0;

@@ -54,13 +54,13 @@ fn the_shading_correction_makes_photons_agree_with_camera_paths() {
     let (from, normal) = (Vec3::new(0.6, 0.8, 0.0), Vec3::new(0.1, 1.0, 0.05).normalize());
     let mirrored = |normal: Vec3| BsdfSample::specular((2.0 * from.dot(normal) * normal - from).normalize());
     let to = mirrored(normal);
-    assert!((shading_correction(from, &to, normal) - 1.0).abs() < 1e-6);
+    assert!((shading_correction(from, &to, 1.0, normal) - 1.0).abs() < 1e-6);
     // Reflection has equal cosines to the shading normal: the triangle's foreshortening remains.
     let expected = to.direction.y / from.y;
-    assert!((shading_correction(from, &to, Vec3::Y) / expected - 1.0).abs() < 1e-5);
-    assert_eq!(shading_correction(Vec3::X, &to, Vec3::Y), 0.0);
+    assert!((shading_correction(from, &to, 1.0, Vec3::Y) / expected - 1.0).abs() < 1e-5);
+    assert_eq!(shading_correction(Vec3::X, &to, 1.0, Vec3::Y), 0.0);
     // Mirrored about the geometric normal, whatever the interpolated one is
-    assert!((shading_correction(from, &mirrored(Vec3::Y), Vec3::Y) - 1.0).abs() < 1e-5);
+    assert!((shading_correction(from, &mirrored(Vec3::Y), 1.0, Vec3::Y) - 1.0).abs() < 1e-5);
 }
 
 #[test]
@@ -76,13 +76,16 @@ fn the_shading_correction_of_refraction_is_about_the_normal_that_refracts() {
         let to = refracted(normal);
         let expected = from.dot(normal) * to.direction.y.abs() / (from.y * to.direction.dot(normal).abs());
         assert!((expected - 1.0).abs() > 0.01);
-        assert!((shading_correction(from, &to, Vec3::Y) / expected - 1.0).abs() < 1e-4, "{eta}");
+        assert!((shading_correction(from, &to, eta, Vec3::Y) / expected - 1.0).abs() < 1e-4, "{eta}");
         for normal in [normal, Vec3::Y] {
-            assert!((shading_correction(from, &refracted(normal), normal) - 1.0).abs() < 1e-4, "{eta}");
+            assert!((shading_correction(from, &refracted(normal), eta, normal) - 1.0).abs() < 1e-4, "{eta}");
+            // Also where the path started inside of the body, so that radiance is not scaled
+            let from_inside = BsdfSample { eta_scale: 1.0, ..refracted(normal) };
+            assert!((shading_correction(from, &from_inside, eta, normal) - 1.0).abs() < 1e-4, "{eta} from inside");
         }
     }
     let straight = BsdfSample { is_transmission: true, ..BsdfSample::specular(-from) };
-    assert_eq!(shading_correction(from, &straight, normal), 1.0);
+    assert_eq!(shading_correction(from, &straight, 1.0, normal), 1.0);
 }
 
 fn object(id: u32, shape: Shape, position: Vec3, material: Material) -> Object {
