@@ -1,21 +1,25 @@
 //! Sums of floats without rounding: their value does not depend on the order or the grouping of the addends.
 //!
 //! Fixed point: whole multiples of 2^-64 in 128 bits, from 5e-20 to 9e18. An addend loses what lies below, always
-//! the same; the sums are those of integers.
+//! the same; the sums are those of integers. Addends are clamped to a million millions, so that nine million of them do
+//! not overflow: clamping a sum instead would make it depend on the order.
 
 /// Steps per unit: 2^64.
 const STEPS: f64 = 18_446_744_073_709_551_616.0;
+
+/// Greatest absolute value of an addend.
+const MAX_ADDEND: f32 = 1e12;
 
 /// A sum of floats without rounding.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct ExactSum(i128);
 
 impl ExactSum {
-    /// Adds a float. One that is not finite, or beyond 9e18, counts as that limit.
+    /// Adds a float, clamped to the greatest absolute value of an addend. NaN counts as 0.
     #[inline]
     pub fn add(&mut self, value: f32) {
         // Scaling by a power of two is exact in 64 bits.
-        self.merge(ExactSum((f64::from(value) * STEPS) as i128));
+        self.merge(ExactSum((f64::from(value.clamp(-MAX_ADDEND, MAX_ADDEND)) * STEPS) as i128));
     }
 
     /// Adds another sum.
@@ -70,6 +74,22 @@ mod tests {
         assert_ne!(floats(&mut values.iter()), floats(&mut values.iter().rev()), "floats do depend on it");
         let doubles: f64 = values.iter().map(|value| f64::from(*value)).sum();
         assert!((forward.value() - doubles).abs() < 1e-6 * doubles.abs(), "{} {doubles}", forward.value());
+    }
+
+    #[test]
+    fn sums_of_huge_and_infinite_addends_do_not_overflow_and_nan_counts_as_0() {
+        let sum = |values: &[f32]| {
+            let mut sum = ExactSum::default();
+            values.iter().for_each(|value| sum.add(*value));
+            sum
+        };
+        let limit = f64::from(MAX_ADDEND);
+        for huge in [f32::INFINITY, f32::MAX, 9.3e18] {
+            assert_eq!(sum(&[huge, 1.0]).value(), limit + 1.0, "{huge}");
+            assert_eq!(sum(&[1.0, huge, huge]).value(), 2.0 * limit + 1.0, "{huge}");
+            assert_eq!(sum(&[-huge, 1.0, huge]).value(), 1.0, "{huge}");
+        }
+        assert_eq!(sum(&[f32::NAN, 2.0]).value(), 2.0);
     }
 
     #[test]
