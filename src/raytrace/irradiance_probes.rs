@@ -8,6 +8,7 @@
 //! on its sides.
 
 use super::control::RenderControl;
+use super::enclosure::objects_around;
 use super::film::{Layer, MAX_LIGHT_LAYERS, NonFiniteGate, NonFiniteReport, assign_layers};
 use super::geometry_cache::GeometryCache;
 use super::lights::TracedLight;
@@ -18,11 +19,11 @@ use super::render_scene::RenderScene;
 use super::retrace::Retrace;
 use super::sampler::{self, Dimensions, Sampler};
 use super::sink::RadianceSink;
-use crate::math::{Ray, warp};
+use crate::math::warp;
 use crate::photo::exposure;
 use crate::photo::irradiance_grid::{FACES, GridLayout, IrradianceGrid};
 use crate::scene::{Assets, Light, Scene, SceneChange};
-use glam::{UVec3, Vec2, Vec3};
+use glam::{UVec3, Vec3};
 use rayon::prelude::*;
 use std::f32::consts::PI;
 
@@ -154,17 +155,8 @@ fn assign_invisible_layers(scene: &Scene, lights: &mut [(TracedLight, &Light)]) 
 
 /// Returns true if a quarter of the rays from a point first hit the back of a closed object.
 fn is_inside(tracer: &mut PathTracer<'_>, position: Vec3) -> bool {
-    let scene = tracer.caster.scene;
-    let hits_back = |index: &u32| {
-        let u = Vec2::new((*index as f32 + 0.5) / INSIDE_RAYS as f32, (*index as f32 * 0.618_034).fract());
-        let direction = warp::uniform_sphere(u);
-        let ray = Ray { origin: position - scene.origin, direction, t_max: f32::INFINITY };
-        tracer.caster.intersect(&ray).is_some_and(|hit| {
-            let is_closed = scene.aggregate.instances()[hit.instance as usize].geometry.is_closed();
-            is_closed && scene.aggregate.surface(&hit).geometric_normal.dot(direction) > 0.0
-        })
-    };
-    4 * (0..INSIDE_RAYS).filter(hits_back).count() >= INSIDE_RAYS as usize
+    let origin = position - tracer.caster.scene.origin;
+    4 * objects_around(&mut tracer.caster, origin, INSIDE_RAYS).len() >= INSIDE_RAYS as usize
 }
 
 /// The sums of a probe.

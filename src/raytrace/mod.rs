@@ -25,6 +25,7 @@ mod connection;
 mod control;
 mod coverage;
 mod emitters;
+mod enclosure;
 mod events;
 mod exact_sum;
 mod face_stack;

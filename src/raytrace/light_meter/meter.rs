@@ -6,16 +6,16 @@ use super::replicate::{self, REPLICATES, Replicate};
 use super::rounds::SamplingRound;
 use super::sampling::RoundSampler;
 use super::studio::{MeteredLight, MeteredStudio, blank_reading};
-use crate::math::{Ray, warp};
 use crate::photo::meter::{LightReading, Reading};
 use crate::raytrace::control::RenderControl;
+use crate::raytrace::enclosure::objects_around;
 use crate::raytrace::film::NonFiniteReport;
 use crate::raytrace::geometry_cache::GeometryCache;
 use crate::raytrace::prepare::PrepareError;
 use crate::raytrace::ray_caster::RayCaster;
 use crate::raytrace::render_scene::ROOM;
 use crate::scene::{Assets, Light, Scene};
-use glam::{Vec2, Vec3};
+use glam::Vec3;
 use rayon::prelude::*;
 
 /// A reading with its cost.
@@ -122,23 +122,12 @@ impl LightMeter {
         listed.chain(by_layer.get(self.studio.emission_layer()).cloned()).collect()
     }
 
-    /// The closed object around a point in the tracer's space: nearly every ray from there first hits a back face.
+    /// Returns the closed object around a point in the tracer's space: nearly every ray from there first hits a back face.
     fn enclosing_object(&self, origin: Vec3) -> Option<u32> {
         const RAYS: u32 = 64;
-        let aggregate = &self.studio.scene.aggregate;
         let mut caster = RayCaster::new(&self.studio.scene);
-        let mut back_faces = 0;
-        let mut object = None;
-        for i in 0..RAYS {
-            let u = Vec2::new((i as f32 + 0.5) / RAYS as f32, (i as f32 * 0.618_034).fract());
-            let direction = warp::uniform_sphere(u);
-            let hit = caster.intersect(&Ray { origin, direction, t_max: f32::INFINITY })?;
-            let index = aggregate.instances()[hit.instance as usize].object;
-            if index != ROOM && aggregate.surface(&hit).geometric_normal.dot(direction) > 0.0 {
-                back_faces += 1;
-                object = Some(index);
-            }
-        }
-        object.filter(|_| back_faces >= RAYS - 4)
+        let mut objects = objects_around(&mut caster, origin, RAYS);
+        objects.retain(|object| *object != ROOM);
+        objects.last().copied().filter(|_| objects.len() >= RAYS as usize - 4)
     }
 }
