@@ -37,8 +37,7 @@ impl CellKey {
     pub fn of(surface: &SurfaceInteraction, largest_cell_m: f32, CellLevel(level): CellLevel) -> Self {
         let cell_m = CellLevel(level).cell_m(largest_cell_m);
         let [x, y, z] = (surface.position / cell_m).to_array().map(floor);
-        // One of 26 directions: to the faces, edges and corners of a cube
-        let normal = IVec3::from(surface.normal.to_array().map(|part| approx::round(1.5 * part) as i32));
+        let normal = cube_direction(surface.normal);
         CellKey([x, y, z, normal.dot(IVec3::new(1, 4, 16)), surface.material.cast_signed(), level])
     }
 
@@ -47,6 +46,12 @@ impl CellKey {
         let [x, y, z, normal, material, level] = self.0.map(i32::cast_unsigned);
         (x ^ z.rotate_left(16), y ^ normal.rotate_left(12) ^ material.rotate_left(20) ^ level.rotate_left(27))
     }
+}
+
+/// Returns the nearest of 26 directions: to the faces, edges and corners of a cube.
+fn cube_direction(normal: Vec3) -> IVec3 {
+    // 1.5 rounds to the even 2
+    IVec3::from(normal.to_array().map(|part| approx::round(1.5 * part).clamp(-1.0, 1.0) as i32))
 }
 
 /// Returns the largest whole number up to a number: the standard library's is a call on CPUs without SSE 4.1.
@@ -122,5 +127,20 @@ impl IrradianceCache {
         let factor = bsdf.matte_factor()?;
         let light = self.cells.get(&CellKey::of(surface, self.largest_cell_m, level))?;
         Some(CachedLight { factor, light, cell_m: level.cell_m(self.largest_cell_m) })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn normals_that_differ_by_rounding_are_of_one_direction() {
+        for axis in [Vec3::X, Vec3::NEG_Y, Vec3::Z] {
+            assert_eq!(cube_direction(axis), axis.as_ivec3());
+            assert_eq!(cube_direction(axis * 0.999_999_94), axis.as_ivec3());
+        }
+        assert_eq!(cube_direction(Vec3::new(0.6, 0.0, -0.8)), IVec3::new(1, 0, -1));
+        assert_eq!(cube_direction(Vec3::new(0.2, 0.3, 0.93)), IVec3::new(0, 0, 1));
     }
 }
