@@ -34,10 +34,9 @@ pub fn survives(throughput: &mut Vec3, survival: f32, u: f32) -> bool {
     if u >= survival {
         return false;
     }
-    if survival == 1.0 {
-        return true;
+    if survival != 1.0 {
+        *throughput /= survival;
     }
-    *throughput /= survival;
     luminance(*throughput).is_finite()
 }
 
@@ -46,10 +45,11 @@ mod tests {
     use super::*;
 
     #[test]
-    fn black_and_nan_paths_end_and_bright_ones_keep_their_mean() {
+    fn black_nan_and_infinite_paths_end_and_bright_ones_keep_their_mean() {
         for dark in [Vec3::ZERO, Vec3::NAN, Vec3::NEG_ONE] {
             assert!(!survives(&mut dark.clone(), survival_probability(dark, 1.0, 0), 0.0));
         }
+        assert!(!survives(&mut Vec3::INFINITY.clone(), survival_probability(Vec3::INFINITY, 1.0, 0), 0.0));
         assert_eq!(survival_probability(Vec3::splat(0.01), 1.0, 0), 1.0);
         assert_eq!(survival_probability(Vec3::splat(0.01), 1.0, 1), 0.02);
         assert_eq!(survival_probability(Vec3::splat(4.0), 1.0, 2), 1.0);
