@@ -12,7 +12,7 @@ use super::irradiance_cache::{CellKey, Footprint, IrradianceCache};
 use super::lens::{FilmCamera, PixelCamera, camera_ray};
 use super::limits::PathLimits;
 use super::path_tracer::PathTracer;
-use super::pilot_path::{self, PilotVertex};
+use super::pilot_path::{self, PilotRaster, PilotVertex};
 use super::ray_caster::RayCaster;
 use super::render_scene::RenderScene;
 use super::sample_pass::SamplePass;
@@ -95,23 +95,22 @@ fn trace_pilots<T: Send>(
     index: u32,
     found: impl Fn(u32, &PilotVertex<'_>) -> Option<T> + Sync,
 ) -> Vec<T> {
-    let (width, height) = camera.size();
-    let stride = (f64::from(width) * f64::from(height) / f64::from(paths)).sqrt();
-    let (across, down) = ((f64::from(width) / stride) as u32, (f64::from(height) / stride) as u32);
-    let pixel = |place: u32| ((f64::from(place) + 0.5) * stride) as u32;
+    let raster = PilotRaster::new(camera.size(), paths);
+    let across = raster.across;
     let row = |y: u32| {
         let mut caster = RayCaster::new(scene);
         let mut row = Vec::new();
         for x in 0..across {
             // Several paths of one pixel of a small picture differ by their seeds
-            let sampler = Sampler::new(pixel(x), pixel(y), index, SEED ^ (x + y * across));
+            let pixel = raster.pixel(x, y);
+            let sampler = Sampler::new(pixel.0, pixel.1, index, SEED ^ (x + y * across));
             pilot_path::trace(&mut caster, camera_ray(camera, &sampler), &sampler, PILOT_SCATTERINGS, |vertex| {
                 row.extend(found(x + y * across, vertex));
             });
         }
         row
     };
-    (0..down).into_par_iter().flat_map_iter(row).collect()
+    (0..raster.down).into_par_iter().flat_map_iter(row).collect()
 }
 
 impl CachePoints {

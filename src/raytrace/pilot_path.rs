@@ -11,6 +11,35 @@ use super::sampler::{self, Dimensions, Sampler};
 use crate::math::Ray;
 use glam::Vec3;
 
+/// The pixels of pilot paths: one of so many across and down.
+#[derive(Clone, Copy, Debug)]
+pub struct PilotRaster {
+    size: (u32, u32),
+    /// Distance between two of them, pixels; less than 1 where several paths share a pixel.
+    pub stride: f64,
+    /// Number across, at least one.
+    pub across: u32,
+    /// Number down, at least one.
+    pub down: u32,
+}
+
+impl PilotRaster {
+    /// Returns about so many pixels of a picture.
+    pub fn new((width, height): (u32, u32), paths: u32) -> Self {
+        let stride = (f64::from(width) * f64::from(height) / f64::from(paths)).sqrt();
+        let along = |pixels: u32| ((f64::from(pixels) / stride) as u32).max(1);
+        PilotRaster { size: (width, height), stride, across: along(width), down: along(height) }
+    }
+
+    /// Returns the pixel of a place in the raster.
+    pub fn pixel(&self, x: u32, y: u32) -> (u32, u32) {
+        let at = |place: u32, pixels: u32| {
+            (((f64::from(place) + 0.5) * self.stride) as u32).min(pixels.saturating_sub(1))
+        };
+        (at(x, self.size.0), at(y, self.size.1))
+    }
+}
+
 /// A vertex of a pilot path.
 #[derive(Debug)]
 pub struct PilotVertex<'a> {
@@ -69,5 +98,23 @@ pub fn trace(
         throughput *= sample.weight;
         solid_angle = if sample.specular { 0.0 } else { 1.0 / sample.pdf };
         ray = Ray { origin: surface.spawn_origin(sample.direction), direction: sample.direction, t_max: f32::INFINITY };
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_strip_narrower_than_the_stride_has_pilot_paths_too() {
+        for size in [(1, 1000), (1000, 1), (3, 4000)] {
+            let raster = PilotRaster::new(size, 16);
+            assert!(raster.stride > f64::from(size.0.min(size.1)));
+            assert!(raster.across * raster.down >= 16, "{raster:?}");
+            let (x, y) = raster.pixel(raster.across - 1, raster.down - 1);
+            assert!(x < size.0 && y < size.1, "{raster:?}");
+        }
+        let raster = PilotRaster::new((60, 40), 24);
+        assert_eq!((raster.across, raster.down, raster.pixel(0, 0), raster.pixel(5, 3)), (6, 4, (5, 5), (55, 35)));
     }
 }

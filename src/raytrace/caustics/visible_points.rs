@@ -3,7 +3,7 @@
 use super::grid::{HashGrid, Positioned};
 use crate::math::quantile;
 use crate::raytrace::lens::{PixelCamera, camera_ray};
-use crate::raytrace::pilot_path::{self, PilotVertex};
+use crate::raytrace::pilot_path::{self, PilotRaster, PilotVertex};
 use crate::raytrace::ray_caster::RayCaster;
 use crate::raytrace::render_scene::RenderScene;
 use crate::raytrace::sampler::Sampler;
@@ -55,16 +55,13 @@ impl VisiblePoints {
     /// Traces about so many camera paths of a picture.
     pub fn trace(scene: &RenderScene, camera: &impl PixelCamera, paths: u32) -> Self {
         let (width, height) = camera.size();
-        // One pixel of so many across and down
-        let stride = (f64::from(width) * f64::from(height) / f64::from(paths)).sqrt().max(1.0);
-        let across = (f64::from(width) / stride) as u32;
-        let down = (f64::from(height) / stride) as u32;
-        let spacing = stride as f32 * camera.pixel_m();
+        let raster = PilotRaster::new((width, height), paths.min(width.saturating_mul(height)));
+        let spacing = raster.stride as f32 * camera.pixel_m();
         let mut points = Vec::new();
         let mut caster = RayCaster::new(scene);
-        for cell in 0..across * down {
-            let at = |index: u32| ((f64::from(index) + 0.5) * stride) as u32;
-            let sampler = Sampler::new(at(cell % across), at(cell / across), 0, 0);
+        for cell in 0..raster.across * raster.down {
+            let (x, y) = raster.pixel(cell % raster.across, cell / raster.across);
+            let sampler = Sampler::new(x, y, 0, 0);
             pilot_path::trace(&mut caster, camera_ray(camera, &sampler), &sampler, 0, |vertex| {
                 let PilotVertex { surface, wo, travelled: distance, .. } = *vertex;
                 if surface.strand.is_none() && scene.materials[surface.material as usize].has_non_specular_lobe() {
