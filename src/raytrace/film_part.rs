@@ -243,19 +243,30 @@ fn shown(rgb: DVec3) -> [f32; 3] {
 
 impl PartAovs {
     fn add(&mut self, sample: &AovPicture) {
-        let AovPicture { albedo, normal, seen_albedo, seen_normal, .. } = sample;
+        // A part has its own size and noise
+        let AovPicture {
+            width: _,
+            height: _,
+            albedo,
+            normal,
+            seen_albedo,
+            seen_normal,
+            depth_m,
+            object_id,
+            relative_variance: _,
+        } = sample;
         for (sums, values) in self.vectors_mut().into_iter().zip([albedo, normal, seen_albedo, seen_normal]) {
             sums.iter_mut().zip(values).for_each(|(sum, value)| add(sum, *value));
         }
-        self.keep_first(&sample.depth_m, &sample.object_id);
+        self.keep_first(depth_m, object_id);
     }
 
     fn merge(&mut self, other: &PartAovs) {
-        let PartAovs { albedo, normal, seen_albedo, seen_normal, .. } = other;
+        let PartAovs { albedo, normal, seen_albedo, seen_normal, depth_m, object_id } = other;
         for (own, others) in self.vectors_mut().into_iter().zip([albedo, normal, seen_albedo, seen_normal]) {
             merge(own, others);
         }
-        self.keep_first(&other.depth_m, &other.object_id);
+        self.keep_first(depth_m, object_id);
     }
 
     /// Returns the sums of albedo and normal, of first hits and then of what is seen.

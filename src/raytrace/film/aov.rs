@@ -46,11 +46,12 @@ impl AovTile {
 
     /// Adds the first hit of a sample; depth is measured along the unit `view_axis`.
     pub fn add(&mut self, pixel: usize, sample_index: u32, hit: &FirstHit, view_axis: Vec3) {
-        self.albedo[pixel] += hit.albedo;
-        self.normal[pixel] += hit.normal;
+        let FirstHit { ray, distance, normal, albedo, object } = *hit;
+        self.albedo[pixel] += albedo;
+        self.normal[pixel] += normal;
         if sample_index == 0 {
-            self.depth_m[pixel] = hit.ray.origin.dot(view_axis) + hit.distance * hit.ray.direction.dot(view_axis);
-            self.object_id[pixel] = match hit.object {
+            self.depth_m[pixel] = ray.origin.dot(view_axis) + distance * ray.direction.dot(view_axis);
+            self.object_id[pixel] = match object {
                 FirstObject::Emitter => AovPicture::NO_OBJECT,
                 FirstObject::Room => AovPicture::ROOM,
                 FirstObject::Object(index) => AovPicture::object_id(index as usize),
@@ -60,8 +61,9 @@ impl AovTile {
 
     /// Adds a surface that a sample sees directly or by mirrors and clear glass.
     pub fn add_seen(&mut self, pixel: usize, surface: &SeenSurface) {
-        self.seen_albedo[pixel] += surface.albedo;
-        self.seen_normal[pixel] += surface.normal;
+        let SeenSurface { albedo, normal } = *surface;
+        self.seen_albedo[pixel] += albedo;
+        self.seen_normal[pixel] += normal;
     }
 
     /// Sets a pixel to `samples` times the values of a picture's pixel.
@@ -74,33 +76,34 @@ impl AovTile {
 
     /// Returns a copy of some pixels.
     pub fn range(&self, pixels: Range<usize>) -> Self {
+        let AovTile { albedo, normal, seen_albedo, seen_normal, depth_m, object_id } = self;
         let copy = |values: &[Vec3]| values[pixels.clone()].to_vec();
         AovTile {
-            albedo: copy(&self.albedo),
-            normal: copy(&self.normal),
-            seen_albedo: copy(&self.seen_albedo),
-            seen_normal: copy(&self.seen_normal),
-            depth_m: self.depth_m[pixels.clone()].to_vec(),
-            object_id: self.object_id[pixels.clone()].to_vec(),
+            albedo: copy(albedo),
+            normal: copy(normal),
+            seen_albedo: copy(seen_albedo),
+            seen_normal: copy(seen_normal),
+            depth_m: depth_m[pixels.clone()].to_vec(),
+            object_id: object_id[pixels.clone()].to_vec(),
         }
     }
 
     /// Replaces the pixels from `first` on by those of a copy.
     pub fn set_range(&mut self, first: usize, range: &Self) {
-        let pixels = first..first + range.depth_m.len();
-        self.albedo[pixels.clone()].copy_from_slice(&range.albedo);
-        self.normal[pixels.clone()].copy_from_slice(&range.normal);
-        self.seen_albedo[pixels.clone()].copy_from_slice(&range.seen_albedo);
-        self.seen_normal[pixels.clone()].copy_from_slice(&range.seen_normal);
-        self.depth_m[pixels.clone()].copy_from_slice(&range.depth_m);
-        self.object_id[pixels].copy_from_slice(&range.object_id);
+        let AovTile { albedo, normal, seen_albedo, seen_normal, depth_m, object_id } = range;
+        let pixels = first..first + depth_m.len();
+        self.albedo[pixels.clone()].copy_from_slice(albedo);
+        self.normal[pixels.clone()].copy_from_slice(normal);
+        self.seen_albedo[pixels.clone()].copy_from_slice(seen_albedo);
+        self.seen_normal[pixels.clone()].copy_from_slice(seen_normal);
+        self.depth_m[pixels.clone()].copy_from_slice(depth_m);
+        self.object_id[pixels].copy_from_slice(object_id);
     }
 
     /// Returns true if both have the same number of pixels.
     pub fn has_shape_of(&self, other: &Self) -> bool {
-        let lengths = |tile: &Self| {
-            let vectors = [&tile.albedo, &tile.normal, &tile.seen_albedo, &tile.seen_normal].map(Vec::len);
-            (vectors, tile.depth_m.len(), tile.object_id.len())
+        let lengths = |AovTile { albedo, normal, seen_albedo, seen_normal, depth_m, object_id }: &Self| {
+            ([albedo, normal, seen_albedo, seen_normal].map(Vec::len), depth_m.len(), object_id.len())
         };
         lengths(self) == lengths(other)
     }

@@ -65,9 +65,10 @@ impl<S: RadianceSink> RadianceSink for NonFiniteGate<'_, S> {
     fn first_hit(&mut self, hit: impl FnOnce() -> FirstHit) {
         let NonFiniteGate { sink, sample, report } = self;
         sink.first_hit(|| {
-            let hit = hit();
+            // What the film adds up must be finite; distance and object are values of one sample
+            let FirstHit { ray, distance, normal, albedo, object } = hit();
             let mut admit = |value: Vec3| report.admit(*sample, value).unwrap_or_default();
-            FirstHit { normal: admit(hit.normal), albedo: admit(hit.albedo), ..hit }
+            FirstHit { ray, distance, normal: admit(normal), albedo: admit(albedo), object }
         });
     }
 
