@@ -5,10 +5,10 @@
 //!
 //! To add an emitter, add a variant to [`EmitterShape`] and its arms in `photo/emitter.rs`. A measured luminous intensity
 //! distribution is part of the [`Beam`]. To add another distribution by formula, add a variant to
-//! [`super::emitter::IntensityDistribution`] in the same file. The
-//! compiler then reports one missing arm per renderer: `TracedLight::new` (`raytrace/lights/mod.rs`),
-//! `RasterLights::add` (`raster/lights.rs`), `gpu_light` (`preview/lights/light_table.rs`); and, for a new shape only,
-//! `TracedLight`'s sampling, `irradiance_per_color` (`preview/lights/environment.rs`), `add_emitters`
+//! [`super::emitter::IntensityDistribution`] in the same file. The compiler then reports one missing arm per renderer:
+//! `TracedLight::new` (`raytrace/lights/traced_light.rs`), `RasterLights::add` (`raster/lights.rs`), `gpu_light`
+//! (`preview/lights/light_table.rs`); and, for a new shape only, `TracedLight`'s sampling, `LightBounds::of`
+//! (`raytrace/lights/light_bounds.rs`), `irradiance_per_color` (`preview/lights/environment.rs`), `add_emitters`
 //! (`preview/geometry/draw_list.rs`) and the read-out `on_axis` (`editor/document/readout.rs`).
 
 use super::beam::{self, Beam};

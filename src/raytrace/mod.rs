@@ -9,9 +9,15 @@
 //! No clock, no entropy, no globals. A rendered value is a function of scene, pixel, sample, dimension and seed: the
 //! same bits for any number of threads.
 //!
-//! To add a rendering method: [`Method`], `limits`, `pixel_sampler`. To add a film channel: `sink::FirstHit`,
-//! `film::aov`, `photo::AovPicture`, and its name in `io::picture`. To add a step to replays: `events`, and its line of
+//! To add a rendering method: [`Method`], `limits`, `pixel_sampler`. To add a step to replays: `events`, and its line of
 //! text in the command line's `explain_pixel`.
+//!
+//! A new film channel needs
+//! - a field of `sink::FirstHit` or `sink::SeenSurface`, and its check in `film::gate`;
+//! - its sum in `film::aov`, with the copies of bands and `BYTES_PER_PIXEL`;
+//! - its sum without rounding in `film_part`, with `FilmPart::bytes`;
+//! - a field of `photo::AovPicture`;
+//! - its names in `io::picture` and in `io::picture::part_file`.
 
 mod aggregate;
 mod approximated_vertex;

@@ -231,7 +231,9 @@ impl TracedMaterial {
         self.is_clear() || (self.metallic > 0.5 && self.is_smooth())
     }
 
-    /// Returns true if the BSDF has a lobe that is not a delta function, so that light sampling can contribute.
+    /// Returns true if the BSDF has a lobe that is not a delta function at any point, so that light sampling can
+    /// contribute. [`MaterialPoint::has_non_specular_lobe`](super::MaterialPoint::has_non_specular_lobe) is the same at
+    /// one point, without frosting.
     pub fn has_non_specular_lobe(&self) -> bool {
         let has_diffuse = self.metallic < 1.0 && self.base_color.max_element() > 0.0;
         let is_metal_in_places = self.mapped_gloss.as_ref().is_some_and(|mapped| mapped.metallic > 0.0);

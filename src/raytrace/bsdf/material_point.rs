@@ -89,7 +89,8 @@ impl<'a> MaterialPoint<'a> {
         self.alpha < ggx::MIN_ALPHA
     }
 
-    /// Returns true if the BSDF has a lobe that is not a delta function.
+    /// Returns true if the BSDF has a lobe that is not a delta function, apart from frosting: see
+    /// [`TracedMaterial::has_non_specular_lobe`].
     pub fn has_non_specular_lobe(&self) -> bool {
         let has_diffuse = self.metallic < 1.0 && self.material.base_color.max_element() > 0.0;
         self.transmission < 1.0 && (has_diffuse || !self.is_smooth())

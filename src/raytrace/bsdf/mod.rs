@@ -17,10 +17,14 @@
 //! A new lobe of surfaces needs
 //! - a file with a `sample` (local direction, or a whole [`BsdfSample`] for a delta lobe) and an `eval` (BSDF times
 //!   cosine, pdf times probability; in the local frame, whose +Z is the shading normal);
-//! - a variant of `Lobe` with its probability in `LobeProbabilities` (`lobe.rs`), an arm of `sample` in `surface.rs`,
-//!   whose match is exhaustive, and its part in the sums of `eval` and of `surface_lanes.rs`;
-//! - its parameters in [`TracedMaterial`], with `max_albedo`, `has_non_specular_lobe`, `is_nearly_specular` and
-//!   `is_caustic_caster` kept true;
+//! - a variant of `Lobe` with its probability in `LobeProbabilities` (`lobe.rs`), whose `sample` compares numbers and
+//!   does not name every lobe; the probability itself in `material_point.rs`, beside `microfacet_probability`;
+//! - an arm of `sample` in `surface.rs`, whose match is exhaustive, and its part in the sums of `eval`;
+//! - the same in `surface_lanes.rs`, which selects between the diffuse and the microfacet lobe by itself;
+//! - a look at `matte_factor` and `remove_matte_base` in `surface.rs` and `with_diffuse_lobe_alone` in `subsurface.rs`,
+//!   for which a surface is a diffuse and a microfacet lobe;
+//! - its parameters in [`TracedMaterial`], with `max_albedo`, `has_non_specular_lobe` (also that of [`MaterialPoint`]),
+//!   `is_nearly_specular` and `is_caustic_caster` kept true;
 //! - a case in `tests.rs` (chi-square of the density, white furnace).
 
 mod albedo;
