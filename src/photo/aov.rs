@@ -9,7 +9,8 @@ pub struct AovPicture {
     pub width: u32,
     /// Height, pixels.
     pub height: u32,
-    /// Reflectance, linear RGB; white for clear glass and emitters, zero where nothing is hit.
+    /// Base colour times its texture, linear RGB, also of clear glass, whose transmitted light it tints. Of a fibre, the
+    /// mean albedo over all directions; white for emitters, zero where nothing is hit.
     pub albedo: Vec<[f32; 3]>,
     /// Shading normal towards the viewer, world space; zero where nothing is hit and for emitters. Shorter than 1 where
     /// the samples of a pixel differ.

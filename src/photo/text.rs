@@ -12,7 +12,7 @@ pub fn signed_hundredths(stops: f32) -> String {
     if rounded == 0.0 { "0.00".to_owned() } else { format!("{rounded:+.2}").replace('-', "\u{2212}") }
 }
 
-/// Formats a quantity with three significant digits.
+/// Formats a quantity with at most two decimals: three significant digits from 1 to 999.
 pub fn three_digits(value: f32) -> String {
     match value.abs() {
         v if !v.is_finite() => "\u{2013}".to_owned(),

@@ -9,7 +9,7 @@ pub struct Approximations {
     pub photons: bool,
     /// Light on matte surfaces after a bounce comes from an irradiance cache.
     pub irradiance_cache: bool,
-    /// Paths are regularised: gloss that they meet after a wide bounce is blurred.
+    /// Paths are regularised: gloss that they meet after a diffuse bounce is blurred.
     pub regularisation: bool,
 }
 

@@ -1,7 +1,7 @@
 //! The steps of a path, for the replay of a single sample.
 //!
 //! The tracer records positions in its own space, relative to its origin; a replay moves them to world space.
-//! Throughputs and contributions are white luminance, as on the film's layers.
+//! Contributions are white luminance, as on the film's layers; a throughput is a factor.
 
 use super::bsdf::BsdfSample;
 use glam::Vec3;

@@ -57,7 +57,7 @@ pub struct RenderPlan {
     pub photons: bool,
     /// Where paths stay bright, light on matte surfaces after a bounce comes from an irradiance cache.
     pub irradiance_cache: bool,
-    /// Paths are regularised: gloss that they meet after a wide bounce is blurred.
+    /// Paths are regularised: gloss that they meet after a diffuse bounce is blurred.
     pub regularisation: bool,
     /// Number of paths from the first non-specular vertex.
     pub split_factor: u32,
@@ -88,7 +88,7 @@ pub enum Shortcut {
     Photons,
     /// Light on matte surfaces after a bounce comes from an irradiance cache.
     IrradianceCache,
-    /// Gloss that paths meet after a wide bounce is blurred.
+    /// Gloss that paths meet after a diffuse bounce is blurred.
     Regularisation,
 }
 

@@ -1,4 +1,4 @@
-//! Path regularisation: gloss that a path meets after a wide bounce is blurred (Kaplanyan and Dachsbacher 2013, "Path
+//! Path regularisation: gloss that a path meets after a diffuse bounce is blurred (Kaplanyan and Dachsbacher 2013, "Path
 //! Space Regularization for Holistic and Robust Light Transport"; pbrt-v4's `regularize`).
 //!
 //! The gloss of a ball reflects its lamps onto the floor. Of the paths that leave a point of the floor few meet the ball
@@ -8,9 +8,9 @@
 //! is sharp: what changes is where such reflections fall, not how much there is of them. Metal, glass, fibres and
 //! layered materials stay as they are.
 //!
-//! The blur decreases from pass to pass, so that a picture converges to that without: the roughness as the cube root of
-//! the number of samples, for the square of the error, which is as the roughness to the power of 2.8 among things of
-//! plastic, to decrease as the variance does.
+//! The blur decreases from pass to pass, so that a picture converges to that without. The roughness falls as the inverse
+//! cube root of the number of samples: the square of the error, which is as the roughness to the power of 2.8 among
+//! things of plastic, then falls as the variance does.
 
 use super::bsdf::{BlurredGloss, TracedMaterial};
 use super::plan::BLURRED_ROUGHNESS;
@@ -151,7 +151,7 @@ mod tests {
     }
 
     #[test]
-    fn gloss_is_blurred_after_wide_bounces_alone_and_less_with_every_pass() {
+    fn gloss_is_blurred_after_diffuse_bounces_alone_and_less_with_every_pass() {
         let [scene, _] = both(&studio());
         let blur = |first_sample, samples| BlurredMaterials::new(&scene, SamplePass { first_sample, samples });
         let early = blur(0, 16);

@@ -32,7 +32,8 @@ pub struct FirstHit {
     pub distance: f32,
     /// Unit shading normal towards the viewer, world space; zero for an emitter.
     pub normal: Vec3,
-    /// Reflectance at normal incidence; white for clear glass and emitters.
+    /// Base colour times its texture, also of clear glass, whose transmitted light it tints. Of a fibre, the mean albedo
+    /// over all directions; white for emitters.
     pub albedo: Vec3,
     /// The object.
     pub object: FirstObject,

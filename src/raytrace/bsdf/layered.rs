@@ -3,9 +3,10 @@
 //! From the top: lacquer reflects its directional albedo C, sheen S of what is left, metal and coat B of what is left
 //! under both; the diffuse base gets the rest. With the transmission `T(w) = (1 - C)(1 - S)(1 - B)` of a direction, the
 //! diffuse base is scaled by `T(o) T(i) / mean T` (Kelemen and Szirmay-Kalos 2001), and what lies over it by the smaller
-//! of the transmissions of both directions. Every factor is the same for exchanged directions, and no surface reflects
-//! more than arrives: a white diffuse base reflects all light whatever lies on it, while metal under rough lacquer loses a
-//! few percent between both.
+//! of the transmissions of both directions. Every factor is the same for exchanged directions, except the compensation
+//! for light between the facets of metal and of frosted glass, which depends on the outgoing direction. No surface
+//! reflects more than arrives: a white diffuse base reflects all light whatever lies on it, while metal under rough
+//! lacquer loses a few percent between both.
 //!
 //! Of a translucent sheet, a part of the diffuse light leaves by the same law on the far side.
 

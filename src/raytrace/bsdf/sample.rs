@@ -18,7 +18,8 @@ pub struct BsdfSample {
     pub eta_scale: f32,
     /// Polarisation that the path accepts from here on.
     pub polarisation: Polarisation,
-    /// True if the direction is on the other side of the surface.
+    /// True if the path passes a face of a body or a clear thin pane. False for diffuse light to the far side of a
+    /// translucent sheet, and for frosted panes.
     pub is_transmission: bool,
     /// True for transmission by a thin pane, which does not change the direction: other techniques find the light
     /// behind it as if there were no pane.

@@ -143,7 +143,7 @@ impl Film {
     }
 
     /// Returns the estimated noise: the median of the tiles' noise, in stops. Infinite before there are
-    /// [`MIN_ESTIMATE_SPP`] samples.
+    /// [`MIN_ESTIMATE_SPP`] samples; 0 when every tile is too dark.
     pub fn noise_stops(&self) -> f32 {
         let mut noise: Vec<f32> = self.tiles.iter().filter_map(|tile| tile.noise_stops()).collect();
         noise.sort_by(f32::total_cmp);
