@@ -1,4 +1,4 @@
-//! Rays through surfaces that are not all there: masked and blended ones.
+//! Rays through masked or blended surfaces.
 //!
 //! Where a surface covers a part of a point, a path meets it with that probability: by a number that is a hash of the
 //! ray and the triangle, so that the result does not depend on the order of work. Shadow rays are weighted instead.
@@ -12,12 +12,12 @@ use glam::Vec3;
 
 /// Maximum number of surfaces that a ray passes; the next one stops it.
 const MAX_PASSED: u32 = 4096;
-/// Factor on the path to the next surface below which a shadow ray ends.
+/// Transmittance so far below which a shadow ray counts as blocked.
 const NEGLIGIBLE: f32 = 1e-4;
 
 impl RayCaster<'_> {
-    /// Returns the first surface from `hit` on that the ray meets.
-    pub(super) fn meet(&mut self, ray: &Ray, hit: Hit, filter: RayFilter) -> Option<Hit> {
+    /// Returns the first surface from `hit` on that covers the ray.
+    pub(super) fn skip_uncovered(&mut self, ray: &Ray, hit: Hit, filter: RayFilter) -> Option<Hit> {
         let (mut next, mut hit, mut travelled) = (*ray, hit, 0.0);
         for _ in 0..MAX_PASSED {
             let surface = self.scene.aggregate.surface(&hit);
@@ -32,19 +32,19 @@ impl RayCaster<'_> {
         Some(Hit { t: travelled + hit.t, ..hit })
     }
 
-    /// Returns the part of the light that passes from a point to an emitter at `distance`, 0 to 1, where no surface
-    /// transmits but by not being there.
+    /// Returns the part of the light that passes from a point to an emitter at `distance`, 0 to 1, where masked or
+    /// blended surfaces alone let light pass.
     pub(super) fn passed_light(&mut self, origin: Vec3, direction: Vec3, distance: f32, passed: PassedBodies) -> f32 {
         self.rays += 1;
         let mut ray = Ray { origin, direction, t_max: shadow_ray_end(origin, distance) };
-        let mut part = 1.0;
+        let mut transmittance = 1.0;
         for _ in 0..MAX_PASSED {
             let Some(hit) = self.scene.aggregate.intersect(&ray, RayFilter::lighting(passed), &mut self.stack) else {
-                return part;
+                return transmittance;
             };
             let surface = self.scene.aggregate.surface(&hit);
-            part *= 1.0 - self.scene.coverage(&surface);
-            if part < NEGLIGIBLE {
+            transmittance *= 1.0 - self.scene.coverage(&surface);
+            if transmittance < NEGLIGIBLE {
                 return 0.0;
             }
             ray = Ray { origin: surface.pass_origin(direction), t_max: ray.t_max - hit.t, ..ray };

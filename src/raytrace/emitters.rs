@@ -21,7 +21,7 @@ use glam::Vec3;
 pub struct MisVertex {
     /// Position of the surface.
     pub position: Vec3,
-    /// Shading normal.
+    /// Shading normal; zero where light from all directions is received.
     pub normal: Vec3,
     /// Origin of the ray that left the vertex.
     pub ray_origin: Vec3,

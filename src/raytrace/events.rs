@@ -73,7 +73,7 @@ pub enum PathEvent {
     /// A direction is sampled from the BSDF.
     BsdfSample {
         /// The kind of scattering.
-        lobe: Lobe,
+        lobe: ScatteringKind,
         /// Unit direction.
         direction: Vec3,
         /// Density, 1/sr; none for specular scattering.
@@ -169,7 +169,7 @@ pub struct PathVertex {
 /// A kind of scattering.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Lobe {
+pub enum ScatteringKind {
     /// Diffuse or glossy.
     NonSpecular,
     /// Mirror reflection.
@@ -180,14 +180,14 @@ pub enum Lobe {
     Pane,
 }
 
-impl Lobe {
+impl ScatteringKind {
     /// Returns the kind of scattering of a sample.
     pub(super) fn of(sample: &BsdfSample) -> Self {
         match sample {
-            BsdfSample { is_undeviated: true, .. } => Lobe::Pane,
-            BsdfSample { specular: true, is_transmission: true, .. } => Lobe::SpecularTransmission,
-            BsdfSample { specular: true, .. } => Lobe::SpecularReflection,
-            _ => Lobe::NonSpecular,
+            BsdfSample { is_undeviated: true, .. } => ScatteringKind::Pane,
+            BsdfSample { specular: true, is_transmission: true, .. } => ScatteringKind::SpecularTransmission,
+            BsdfSample { specular: true, .. } => ScatteringKind::SpecularReflection,
+            _ => ScatteringKind::NonSpecular,
         }
     }
 }

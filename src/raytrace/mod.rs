@@ -93,7 +93,7 @@ mod whitted;
 
 pub use approximations::Approximations;
 pub use control::RenderControl;
-pub use events::{Lobe, PathEnd, PathEvent, PathVertex};
+pub use events::{PathEnd, PathEvent, PathVertex, ScatteringKind};
 pub use exact_sum::ExactSum;
 pub use film::{Film, Layer, MAX_LIGHT_LAYERS, MIN_ESTIMATE_SPP, NonFiniteReport, TILE};
 pub use film_part::{FilmPart, PartAovs, PartLayer, PixelSum};

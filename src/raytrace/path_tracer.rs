@@ -10,7 +10,7 @@ use super::aggregate::Hit;
 use super::bsdf::{Bsdf, BsdfSample, Polarisation, SurfaceBsdf};
 use super::caustics::{CausticMis, GatherDensities, GatherPoint, PhotonMap};
 use super::emitters::MisVertex;
-use super::events::{Lobe, PathEnd, PathEvent, PathVertex};
+use super::events::{PathEnd, PathEvent, PathVertex, ScatteringKind};
 use super::geometry::SurfaceInteraction;
 use super::irradiance_cache::IrradianceCache;
 use super::lights::LightImportances;
@@ -138,7 +138,7 @@ impl<'a> PathTracer<'a> {
         limits: PathLimits,
         sink: &mut impl RadianceSink,
     ) {
-        self.trace_from(origin, direction, sampler, limits, (MisVertex::new(origin, direction), None), sink);
+        self.trace_from(origin, direction, sampler, limits, (MisVertex::new(origin, Vec3::ZERO), None), sink);
     }
 
     /// Traces a path from a receptor that samples the lights by itself: emitters that are hit on a straight path do not
@@ -153,7 +153,7 @@ impl<'a> PathTracer<'a> {
         sink: &mut impl RadianceSink,
     ) {
         // With the least density, light sampling has all the MIS weight.
-        let vertex = MisVertex { direction, pdf: Some(f32::MIN_POSITIVE), ..MisVertex::new(origin, direction) };
+        let vertex = MisVertex { direction, pdf: Some(f32::MIN_POSITIVE), ..MisVertex::new(origin, Vec3::ZERO) };
         self.trace_from(origin, direction, sampler, limits, (vertex, gather), sink);
     }
 
@@ -428,7 +428,7 @@ impl<'a> PathTracer<'a> {
             path.media.cross(surface.material, outside);
         }
         sink.record(|| PathEvent::BsdfSample {
-            lobe: Lobe::of(sample),
+            lobe: ScatteringKind::of(sample),
             direction: sample.direction,
             pdf: (!sample.specular).then_some(sample.pdf),
             weight: sample.weight,

@@ -47,7 +47,7 @@ pub struct RenderPlan {
     pub normal_maps: bool,
     /// Brushed surfaces need their tangents.
     pub tangents: bool,
-    /// Rays pass surfaces that are not all there.
+    /// Rays pass masked or blended surfaces.
     pub coverage: bool,
     /// The lens has an aperture.
     pub lens: bool,

@@ -53,7 +53,7 @@ impl<'a> RayCaster<'a> {
             return self.intersect_all(ray, filter);
         }
         let hit = self.intersect_all(ray, filter)?;
-        self.meet(ray, hit, filter)
+        self.skip_uncovered(ray, hit, filter)
     }
 
     /// Returns the closest hit, also of a surface that is not there.

@@ -15,7 +15,7 @@ use glam::Vec3;
 
 /// Maximum number of clear surfaces on the way to a light.
 const MAX_CLEAR_SURFACES: u32 = 64;
-/// Maximum number of surfaces between two of them that are not all there.
+/// Maximum number of masked or blended surfaces between two others.
 const MAX_PASSED: u32 = 4096;
 
 /// The treatment of bodies on a shadow ray.
@@ -122,7 +122,7 @@ impl RayCaster<'_> {
 }
 
 impl RayCaster<'_> {
-    /// Returns the next surface on a shadow ray, and weights the ray where it passes others that are not all there.
+    /// Returns the next surface on a shadow ray, and weights the ray where it passes masked or blended ones.
     fn next_surface(&mut self, shadow_ray: &mut ShadowRay<'_>) -> Option<Hit> {
         let filter = RayFilter::lighting(shadow_ray.query.passed);
         let hit = self.intersect_all(&shadow_ray.ray, filter)?;
@@ -136,7 +136,7 @@ impl RayCaster<'_> {
             if coverage >= 1.0 {
                 break;
             }
-            shadow_ray.passed *= 1.0 - coverage;
+            shadow_ray.coverage_transmittance *= 1.0 - coverage;
             travelled += hit.t;
             let t_max = next.t_max - hit.t;
             next = Ray { origin: surface.pass_origin(next.direction), t_max, ..next };
@@ -157,8 +157,8 @@ struct ShadowRay<'a> {
     path: StraightPath,
     faces: FaceStack,
     wavefront: Wavefront,
-    /// Part of the light that surfaces let pass which are not all there.
-    passed: f32,
+    /// Transmittance of the masked and blended surfaces so far.
+    coverage_transmittance: f32,
 }
 
 /// A clear surface on a shadow ray.
@@ -185,7 +185,7 @@ impl<'a> ShadowRay<'a> {
             path: StraightPath::default(),
             faces: FaceStack::new(direction, query.between_bodies),
             wavefront: Wavefront::new(direction),
-            passed: 1.0,
+            coverage_transmittance: 1.0,
         }
     }
 
@@ -197,7 +197,7 @@ impl<'a> ShadowRay<'a> {
         // The space beyond the last surface, up to the sun, is not inside of anything.
         let rest = if self.ray.t_max.is_finite() { self.ray.t_max } else { 0.0 };
         let transmittance =
-            self.faces.transmittance(self.media.transmittance(&self.scene.materials, rest)) * self.passed;
+            self.faces.transmittance(self.media.transmittance(&self.scene.materials, rest)) * self.coverage_transmittance;
         let mut wavefront = self.wavefront;
         let mut miss = Vec3::ZERO;
         if let Target::Point(point) = self.query.target {

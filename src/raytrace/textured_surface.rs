@@ -114,7 +114,7 @@ impl RenderScene {
         map.map_or(material.emission, |map| material.emission * map.at_surface(surface))
     }
 
-    /// Returns the part of a surface that is there, 0 to 1.
+    /// Returns the coverage at a masked or blended surface, 0 to 1; 1 at others.
     pub(super) fn coverage(&self, surface: &SurfaceInteraction) -> f32 {
         let material = self.material_of(surface);
         if material.coverage == Alpha::Opaque || surface.strand.is_some() {

@@ -51,7 +51,7 @@ fn trace_ray(
     let hit = if depth == 0 { caster.intersect_from_camera(&ray) } else { caster.intersect(&ray) };
     let distance = hit.map_or(f32::INFINITY, |hit| hit.t);
     if depth > 0 {
-        let vertex = MisVertex::new(ray.origin, ray.direction);
+        let vertex = MisVertex::new(ray.origin, Vec3::ZERO);
         caster.add_emitter_hits(&ray, hit.as_ref(), throughput, &vertex, &media, sink);
     } else if caster.add_visible_emitter(&ray, distance, sink) {
         return;

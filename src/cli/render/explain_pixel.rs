@@ -4,7 +4,7 @@ use super::Arguments;
 use crate::cli::terminal::result;
 use crate::io::Loaded;
 use crate::raytrace::{
-    self, GeometryCache, Lobe, PathEnd, PathEvent, PathVertex, Purpose, RenderScene, Replay, SampleId, Settings,
+    self, GeometryCache, PathEnd, PathEvent, PathVertex, Purpose, RenderScene, Replay, SampleId, ScatteringKind, Settings,
 };
 use crate::scene::Scene;
 use anyhow::{Context, anyhow};
@@ -171,12 +171,12 @@ fn triple(value: Vec3) -> String {
     format!("({} {} {})", value.x, value.y, value.z)
 }
 
-fn lobe_name(lobe: Lobe) -> &'static str {
+fn lobe_name(lobe: ScatteringKind) -> &'static str {
     match lobe {
-        Lobe::NonSpecular => "diffuse or glossy",
-        Lobe::SpecularReflection => "specular reflection",
-        Lobe::SpecularTransmission => "specular transmission",
-        Lobe::Pane => "transmission through a pane",
+        ScatteringKind::NonSpecular => "diffuse or glossy",
+        ScatteringKind::SpecularReflection => "specular reflection",
+        ScatteringKind::SpecularTransmission => "specular transmission",
+        ScatteringKind::Pane => "transmission through a pane",
     }
 }
 

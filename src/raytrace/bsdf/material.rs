@@ -48,7 +48,7 @@ pub struct TracedMaterial {
     pub smooth_gloss: bool,
     /// The clear dome over the textures.
     pub dome: Option<Dome>,
-    /// Parts of the surface that are not there. Glass is all there.
+    /// How the surface is masked or blended. Glass is neither.
     pub coverage: Alpha,
     /// The fibre that strands of the material are.
     fibre: Option<TracedFibre>,

@@ -37,7 +37,7 @@ pub struct LiveTile {
 
 /// The criterion by which a tile is converged.
 #[derive(Clone, Copy, Debug)]
-pub struct NoiseTarget<'a> {
+pub struct ConvergenceTarget<'a> {
     /// Noise at which a tile takes no more samples, stops.
     pub noise_stops: f32,
     /// Picture values per time-integrated luminance (cd s/m2).
@@ -131,7 +131,7 @@ impl LiveTile {
     }
 
     /// Counts a completed step, and decides whether the tile is converged.
-    pub fn finish_step(&mut self, is_retracing: bool, target: &NoiseTarget<'_>) {
+    pub fn finish_step(&mut self, is_retracing: bool, target: &ConvergenceTarget<'_>) {
         let has_samples = self.blocks.samples() >= MIN_NOISE_SAMPLES;
         let is_quiet = has_samples
             && self.blocks.noise_stops(self.mean_luminance(target)).is_none_or(|noise| noise <= target.noise_stops);
@@ -147,7 +147,7 @@ impl LiveTile {
     }
 
     /// Mean exposed luminance of all layers. The noise of retraced layers counts against the whole picture.
-    fn mean_luminance(&self, target: &NoiseTarget<'_>) -> f32 {
+    fn mean_luminance(&self, target: &ConvergenceTarget<'_>) -> f32 {
         let of_layer = |(layer, sums): (usize, &[Vec4])| {
             let mean = |sum: &Vec4| if sum.w > 0.0 { luminance(sum.truncate()) / sum.w } else { 0.0 };
             sums.iter().map(mean).sum::<f32>() * target.layer_times[layer]

@@ -2,7 +2,7 @@
 
 use super::camera::LiveCamera;
 use super::history::ReprojectionHistory;
-use super::live_tile::{LiveTile, NoiseTarget};
+use super::live_tile::{LiveTile, ConvergenceTarget};
 use super::primary_hit::PrimaryHit;
 use super::refinement::RefinementStep;
 use crate::color::luminance;
@@ -63,7 +63,7 @@ pub fn refine(tile: &mut LiveTile, context: &RefinementContext<'_>) {
     }
     context.control.count(tracer.sampler.tracer.caster.rays, tracer.paths);
     let RefinementContext { scene, layer_times, noise_stops, .. } = *context;
-    tile.finish_step(is_retracing, &NoiseTarget { noise_stops, exposure: scene.exposure, layer_times });
+    tile.finish_step(is_retracing, &ConvergenceTarget { noise_stops, exposure: scene.exposure, layer_times });
 }
 
 /// A path tracer that writes to live tiles.
