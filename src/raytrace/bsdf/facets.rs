@@ -2,8 +2,8 @@
 //! "Physically-Based Shading at Disney"; Heitz 2014), in a frame whose +X and +Y are these directions and whose +Z is the
 //! normal. With equal alphas it is that of `ggx.rs`.
 
-use super::ggx::MIN_ALPHA;
-use crate::math::{safe_sqrt, sin_cos_turn};
+use super::ggx::{self, MIN_ALPHA};
+use crate::math::safe_sqrt;
 use glam::{Vec2, Vec3};
 use std::f32::consts::PI;
 
@@ -37,15 +37,15 @@ impl Facets {
 
     /// Samples a facet normal among those visible from `wo`: see [`super::ggx::sample_visible_normal`].
     pub fn sample_visible_normal(&self, wo: Vec3, u: Vec2) -> Vec3 {
-        // Warp to the hemisphere configuration
-        let stretched = Vec3::new(wo.x * self.alpha.x, wo.y * self.alpha.y, wo.z).normalize_or(Vec3::Z);
-        // Sample a spherical cap and compute the half vector
-        let z = (1.0 - u.y) * (1.0 + stretched.z) - stretched.z;
-        let radius = safe_sqrt(1.0 - z * z);
-        let (sin, cos) = sin_cos_turn(u.x);
-        let h = Vec3::new(radius * cos, radius * sin, z) + stretched;
-        // Warp back to the ellipsoid configuration
-        Vec3::new(h.x * self.alpha.x, h.y * self.alpha.y, h.z.max(0.0)).normalize_or(Vec3::Z)
+        ggx::sample_visible_normal_of(wo, self.alpha, u)
+    }
+
+    /// Returns BSDF times cosine of reflection by facets, and the density of the reflection of a sampled one, without
+    /// rejected samples. `m` is the half vector, `reflectance` that of a facet there; both are scaled by it.
+    pub fn eval_reflection(&self, wo: Vec3, wi: Vec3, m: Vec3, reflectance: f32) -> (f32, f32) {
+        let (lambda_o, lambda_i) = (self.lambda(wo), self.lambda(wi));
+        let shape = self.distribution(m) / (4.0 * wo.z) * reflectance;
+        (shape / (1.0 + lambda_o + lambda_i), shape / (1.0 + lambda_o))
     }
 
     /// Returns the mean of a value over the facets visible from `wo`, by stratified samples.
@@ -63,7 +63,7 @@ impl Facets {
     pub fn reflected(&self, wo: Vec3, reflectance: impl Fn(f32) -> f32) -> f32 {
         let lambda_o = self.lambda(wo);
         self.mean_visible(wo, |m| {
-            let wi = super::ggx::reflect(wo, m);
+            let wi = ggx::reflect(wo, m);
             let visible = (1.0 + lambda_o) / (1.0 + lambda_o + self.lambda(wi));
             if wi.z > 0.0 { reflectance(wo.dot(m)) * visible } else { 0.0 }
         })
@@ -72,7 +72,6 @@ impl Facets {
 
 #[cfg(test)]
 mod tests {
-    use super::super::ggx;
     use super::*;
     use crate::math::warp;
     use crate::statistics::TestRng;

@@ -90,9 +90,8 @@ impl Frost {
 
     fn eval_reflection(&self, wo: Vec3, wi: Vec3, reflectance: impl Fn(f32) -> f32) -> (Vec3, f32) {
         let m = (wo + wi).normalize_or(Vec3::Z);
-        let (lambda_o, lambda_i) = (self.facets.lambda(wo), self.facets.lambda(wi));
-        let shape = self.facets.distribution(m) / (4.0 * wo.z) * reflectance(wo.dot(m).clamp(0.0, 1.0));
-        (Vec3::splat(shape / (1.0 + lambda_o + lambda_i)), shape / (1.0 + lambda_o))
+        let (value, pdf) = self.facets.eval_reflection(wo, wi, m, reflectance(wo.dot(m).clamp(0.0, 1.0)));
+        (Vec3::splat(value), pdf)
     }
 
     fn eval_pane(&self, lobe: &DielectricLobe, wo: Vec3, wi: Vec3) -> (Vec3, f32) {

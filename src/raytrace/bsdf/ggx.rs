@@ -31,15 +31,21 @@ pub fn lambda(w: Vec3, alpha: f32) -> f32 {
 /// with Spherical Caps").
 #[inline(always)]
 pub fn sample_visible_normal(wo: Vec3, alpha: f32, u: Vec2) -> Vec3 {
+    sample_visible_normal_of(wo, Vec2::splat(alpha), u)
+}
+
+/// The same for the alphas along X and Y of brushed facets.
+#[inline(always)]
+pub fn sample_visible_normal_of(wo: Vec3, alpha: Vec2, u: Vec2) -> Vec3 {
     // Warp to the hemisphere configuration
-    let stretched = Vec3::new(wo.x * alpha, wo.y * alpha, wo.z).normalize_or(Vec3::Z);
+    let stretched = Vec3::new(wo.x * alpha.x, wo.y * alpha.y, wo.z).normalize_or(Vec3::Z);
     // Sample a spherical cap and compute the half vector
     let z = (1.0 - u.y) * (1.0 + stretched.z) - stretched.z;
     let radius = safe_sqrt(1.0 - z * z);
     let (sin, cos) = sin_cos_turn(u.x);
     let h = Vec3::new(radius * cos, radius * sin, z) + stretched;
     // Warp back to the ellipsoid configuration
-    Vec3::new(h.x * alpha, h.y * alpha, h.z.max(0.0)).normalize_or(Vec3::Z)
+    Vec3::new(h.x * alpha.x, h.y * alpha.y, h.z.max(0.0)).normalize_or(Vec3::Z)
 }
 
 /// Reflects a direction about a facet normal.

@@ -201,7 +201,7 @@ impl<'a> LayeredBsdf<'a> {
 
         // Lacquer
         if let Some(coat) = &self.layers.clearcoat {
-            let (shape, lobe_pdf) = facet_lobe(&coat.facets, wo, wi, m);
+            let (shape, lobe_pdf) = coat.facets.eval_reflection(wo, wi, m, 1.0);
             value += Vec3::splat(coat.amount * fresnel::dielectric(cos_half, Clearcoat::IOR) * shape);
             pdf += probabilities.clearcoat * lobe_pdf;
         }
@@ -212,7 +212,7 @@ impl<'a> LayeredBsdf<'a> {
         }
         // Metal and coat
         if self.point.has_microfacets() {
-            let (shape, lobe_pdf) = facet_lobe(&self.facets, wo, wi, m);
+            let (shape, lobe_pdf) = self.facets.eval_reflection(wo, wi, m, 1.0);
             value += self.facet_reflectance(cos_half) * (shape * past_clearcoat * past_o[1].min(past_i[1]));
             pdf += probabilities.facets * lobe_pdf;
         }
@@ -304,11 +304,4 @@ impl<'a> LayeredBsdf<'a> {
         let wi = warp::cosine_hemisphere(u);
         Some(if self.layers.translucency > 0.0 && !is_below(diffuse) { -wi } else { wi })
     }
-}
-
-/// Returns BSDF times cosine and density of a reflecting lobe of facets of reflectance 1.
-fn facet_lobe(facets: &Facets, wo: Vec3, wi: Vec3, m: Vec3) -> (f32, f32) {
-    let shape = facets.distribution(m) / (4.0 * wo.z);
-    let lambda_o = facets.lambda(wo);
-    (shape / (1.0 + lambda_o + facets.lambda(wi)), shape / (1.0 + lambda_o))
 }

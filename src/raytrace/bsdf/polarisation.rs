@@ -7,6 +7,7 @@
 use super::fresnel;
 use crate::math::safe_sqrt;
 use glam::Vec3;
+use std::ops::{Add, Mul, Sub};
 
 /// The accepted linear polarisation, relative to a reference axis perpendicular to the path.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -25,10 +26,8 @@ impl Polarisation {
 
     /// Returns the same polarisation relative to another axis. `path` is the unit direction of the path.
     fn relative_to(self, axis: Vec3, path: Vec3) -> Self {
-        let (cos, sin) = (self.axis.dot(axis), self.axis.cross(axis).dot(path));
-        // Cosine and sine of twice the angle between the axes.
-        let (cos2, sin2) = (cos * cos - sin * sin, 2.0 * sin * cos);
-        Polarisation { axis, q: self.q * cos2 + self.u * sin2, u: self.u * cos2 - self.q * sin2 }
+        let (q, u) = rotated((self.q, self.u), self.axis, axis, path);
+        Polarisation { axis, q, u }
     }
 
     /// Returns the reflectance of an interface for this polarisation, and the polarisations after reflection and
@@ -79,6 +78,17 @@ impl Polarisation {
     }
 }
 
+/// Returns Stokes Q and U relative to another axis. Both axes are perpendicular to the unit direction of the path.
+fn rotated<T>((q, u): (T, T), from: Vec3, to: Vec3, path: Vec3) -> (T, T)
+where
+    T: Copy + Mul<f32, Output = T> + Add<Output = T> + Sub<Output = T>,
+{
+    let (cos, sin) = (from.dot(to), from.cross(to).dot(path));
+    // Cosine and sine of twice the angle between the axes
+    let (cos2, sin2) = (cos * cos - sin * sin, 2.0 * sin * cos);
+    (q * cos2 + u * sin2, u * cos2 - q * sin2)
+}
+
 /// Returns the unit s direction of a plane of incidence; at normal incidence any axis is one.
 fn s_axis(wo: Vec3, normal: Vec3) -> Vec3 {
     wo.cross(normal).try_normalize().unwrap_or_else(|| wo.any_orthonormal_vector())
@@ -114,9 +124,7 @@ impl TransmittedLight {
     /// the unit direction of the light.
     pub fn transmit(&mut self, normal: Vec3, direction: Vec3, [ts, tp]: [Vec3; 2]) {
         let axis = s_axis(direction, normal);
-        let (cos, sin) = (self.axis.dot(axis), self.axis.cross(axis).dot(direction));
-        let (cos2, sin2) = (cos * cos - sin * sin, 2.0 * sin * cos);
-        let (q, u) = (self.q * cos2 + self.u * sin2, self.u * cos2 - self.q * sin2);
+        let (q, u) = rotated((self.q, self.u), self.axis, axis, direction);
         let (sum, difference) = (0.5 * (ts + tp), 0.5 * (ts - tp));
         *self = TransmittedLight {
             axis,
