@@ -4,6 +4,7 @@
 //! disc: there, directions are sampled uniformly in solid angle over the circumscribed square, and those that miss the
 //! disc are rejected.
 
+use super::flat;
 use super::rect::Rect;
 use crate::math::{safe_sqrt, warp};
 use glam::{Vec2, Vec3};
@@ -82,9 +83,7 @@ impl Disc {
     }
 
     fn area_pdf(&self, to: Vec3) -> f32 {
-        let distance2 = to.length_squared();
-        // The cosine is the height over the distance
-        distance2 * distance2.sqrt() / (to.dot(self.normal()).abs() * self.area())
+        flat::area_pdf(to, self.normal(), self.area())
     }
 }
 

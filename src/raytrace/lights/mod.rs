@@ -16,6 +16,7 @@
 
 mod disc;
 mod emitter_bvh;
+mod flat;
 mod light_bounds;
 mod light_bvh;
 mod light_lanes;

@@ -1,6 +1,7 @@
 //! A rectangular emitter, sampled uniformly in solid angle (Urena, Fajardo and King 2013, "An Area-Preserving
 //! Parametrization for Spherical Rectangles").
 
+use super::flat;
 use crate::math::simd::LANES;
 use crate::math::{Vec3Lanes, atan2, safe_sqrt, sin_cos};
 use glam::{Vec2, Vec3};
@@ -100,9 +101,7 @@ impl Rect {
     /// Returns the density of a direction that is sampled by area, for the vector `to` its point, 1/sr.
     #[inline(always)]
     fn area_pdf(&self, to: Vec3) -> f32 {
-        let distance2 = to.length_squared();
-        // The cosine is the height over the distance
-        distance2 * distance2.sqrt() / (to.dot(self.normal).abs() * self.area())
+        flat::area_pdf(to, self.normal, self.area())
     }
 
     /// Returns the rectangle as seen from `point`, without its solid angle.
