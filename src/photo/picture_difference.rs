@@ -1,14 +1,15 @@
 //! The difference of two pictures in stops, as numbers and as false colours.
 
 use super::picture::Picture;
+use super::scopes::MIDDLE_GREY;
 use crate::color::luminance;
 
 /// Largest difference with a colour of its own, stops.
 pub const DIFFERENCE_STOPS: i32 = 3;
 /// Differences up to this many stops have the colour of none.
 const EQUAL_STOPS: f32 = 1.0 / 6.0;
-/// Luminance below which all shadows are equal, where middle grey is 0.18: eight stops below it.
-const LEAST: f32 = 0.18 / 256.0;
+/// Luminance below which all shadows are equal: eight stops below middle grey.
+const LEAST: f32 = MIDDLE_GREY / 256.0;
 
 /// Colours of whole stops from `-DIFFERENCE_STOPS` to `DIFFERENCE_STOPS`, sRGB: darker blue, equal grey, brighter orange.
 const COLORS: [[f32; 3]; 7] = [

@@ -10,8 +10,8 @@ use super::ray_filter::RayFilter;
 use crate::math::Ray;
 use glam::Vec3;
 
-/// Maximum number of surfaces that a ray passes; the next one stops it.
-const MAX_PASSED: u32 = 4096;
+/// Maximum number of masked or blended surfaces that a ray passes between two others; the next one stops it.
+pub(super) const MAX_PASSED: u32 = 4096;
 /// Transmittance so far below which a shadow ray counts as blocked.
 const NEGLIGIBLE: f32 = 1e-4;
 

@@ -377,6 +377,11 @@ pub struct StrandCoordinates {
 }
 
 impl SurfaceInteraction {
+    /// Returns the shading normal on the side from which a ray of this direction comes.
+    pub fn facing_normal(&self, direction: Vec3) -> Vec3 {
+        if self.normal.dot(direction) > 0.0 { -self.normal } else { self.normal }
+    }
+
     /// Returns the origin of a ray that passes the surface straight, as if it were not there.
     pub fn pass_origin(&self, direction: Vec3) -> Vec3 {
         math::offset_origin(self.position, self.position_error, self.geometric_normal, direction)

@@ -31,8 +31,6 @@ use std::f32::consts::PI;
 const MAX_CELLS: u32 = 14;
 /// Smallest distance between probes, metres.
 const MIN_STEP_M: f32 = 0.04;
-/// Limits of the paths, far beyond the depth at which Russian roulette ends them.
-const PATHS: PathLimits = PathLimits { max_non_specular_depth: 4096, max_depth: 4096, split_factor: 1 };
 /// Rays that find whether a probe is inside of an object.
 const INSIDE_RAYS: u32 = 24;
 
@@ -139,8 +137,7 @@ impl IrradianceProbes {
 /// Returns the box around the room, or around all visible objects.
 fn bounds(scene: &Scene, assets: &Assets) -> Option<(Vec3, Vec3)> {
     if let Some(room) = &scene.room {
-        let half = 0.5 * room.size_m.with_y(0.0);
-        return Some((-half, half.with_y(room.size_m.y)));
+        return Some(room.bounds().into());
     }
     let visible = scene.objects.iter().filter(|object| object.visible);
     let boxes = visible.filter_map(|object| assets.object_bounds(object));
@@ -180,7 +177,7 @@ impl GatheredProbe {
             let weights = FACES.map(|face| face.dot(direction).max(0.0) * (4.0 * PI / paths as f32));
             let sink = ProbeSink { layers: &mut self.layers, weights };
             let mut gate = NonFiniteGate { sink, sample: sampler.id(), report: &mut self.nonfinite };
-            tracer.trace_without_direct_light(origin, direction, &sampler, PATHS, None, &mut gate);
+            tracer.trace_without_direct_light(origin, direction, &sampler, PathLimits::UNTIL_ROULETTE, None, &mut gate);
         }
     }
 }

@@ -22,6 +22,10 @@ const DIRECT_SPLIT_FACTOR: u32 = 4;
 const DIRECT_DEPTH: u32 = 16;
 
 impl PathLimits {
+    /// Limits far beyond the depth at which Russian roulette ends paths.
+    pub const UNTIL_ROULETTE: PathLimits =
+        PathLimits { max_non_specular_depth: 4096, max_depth: 4096, split_factor: 1 };
+
     /// The limits of a method for a plan; `max_depth` overrides the plan's depth.
     pub fn new(method: Method, plan: &RenderPlan, max_depth: Option<u32>) -> Self {
         match method {

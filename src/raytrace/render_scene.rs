@@ -177,9 +177,8 @@ impl RenderScene {
 
     /// The film's description of a surface that the camera sees with this throughput.
     pub(super) fn seen_surface(&self, ray: &Ray, throughput: Vec3, surface: &SurfaceInteraction) -> SeenSurface {
-        let side = if surface.normal.dot(ray.direction) > 0.0 { -1.0 } else { 1.0 };
         let part = throughput.max_element().clamp(0.0, 1.0);
-        SeenSurface { albedo: self.albedo(surface) * throughput, normal: surface.normal * side * part }
+        SeenSurface { albedo: self.albedo(surface) * throughput, normal: surface.facing_normal(ray.direction) * part }
     }
 
     /// The film's description of the first hit of a camera ray.
@@ -187,11 +186,10 @@ impl RenderScene {
         let (object, _) = self.object_and_part(hit);
         let is_body = self.aggregate.instances()[hit.instance as usize].body.is_some();
         let no_object = if is_body { FirstObject::Emitter } else { FirstObject::Room };
-        let side = if surface.normal.dot(ray.direction) > 0.0 { -1.0 } else { 1.0 };
         FirstHit {
             ray: *ray,
             distance: hit.t,
-            normal: surface.normal * side,
+            normal: surface.facing_normal(ray.direction),
             albedo: self.albedo(surface),
             object: object.map_or(no_object, FirstObject::Object),
         }

@@ -2,6 +2,7 @@
 
 use super::aggregate::Hit;
 use super::bsdf::{TracedMaterial, fresnel};
+use super::coverage::MAX_PASSED;
 use super::face_stack::{ClearFace, FaceStack};
 use super::geometry::{PassedBodies, SurfaceInteraction};
 use super::medium_stack::MediumStack;
@@ -15,8 +16,6 @@ use glam::Vec3;
 
 /// Maximum number of clear surfaces on the way to a light.
 const MAX_CLEAR_SURFACES: u32 = 64;
-/// Maximum number of masked or blended surfaces between two others.
-const MAX_PASSED: u32 = 4096;
 
 /// The treatment of bodies on a shadow ray.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

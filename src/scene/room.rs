@@ -28,6 +28,12 @@ impl Default for Room {
 }
 
 impl Room {
+    /// Returns the lower and the upper corner in world space, metres.
+    pub fn bounds(&self) -> [Vec3; 2] {
+        let half = 0.5 * self.size_m.with_y(0.0);
+        [-half, half.with_y(self.size_m.y)]
+    }
+
     /// Returns the material of a part of the room's mesh: `floor`, `walls` or `ceiling`.
     pub fn material_of(&self, part: &str) -> &Material {
         match part {

@@ -133,8 +133,7 @@ impl StudioView {
             [project(frame.position()), project(end)]
         });
         let room = scene.room.as_ref().map(|room| {
-            let half = Vec3::new(0.5 * room.size_m.x, 0.0, 0.5 * room.size_m.z);
-            let corners = [project(-half), project(half + Vec3::Y * room.size_m.y)];
+            let corners = room.bounds().map(project);
             [corners[0].min(corners[1]), corners[0].max(corners[1])]
         });
         let mut view = StudioView {

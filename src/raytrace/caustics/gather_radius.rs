@@ -7,8 +7,8 @@ use super::view::CausticView;
 
 /// Gather radius of the first pass, in pixels: little enough blur for the eye to miss.
 const FIRST_RADIUS_PX: f32 = 2.0;
-/// Photons for indirect light are one of 16: the radius around them holds a quarter as many.
-const INDIRECT_SCALE: f32 = 0.5;
+/// Factor of the radius for indirect light, which holds a quarter as many photons for it.
+pub const INDIRECT_SCALE: f32 = 0.5;
 /// Maximum gather radius for indirect light, metres.
 const MAX_INDIRECT_RADIUS_M: f32 = 2.0 * MAX_FILLED_RADIUS_M;
 /// Greatest ratio of the radii of a map: a query visits all photons within the widest one.

@@ -1,6 +1,6 @@
 //! The photon map of one sample pass.
 
-use super::gather_radius::GatherRadius;
+use super::gather_radius::{GatherRadius, INDIRECT_SCALE};
 use super::grid::HashGrid;
 use super::mis::GatherDensities;
 use super::photon::Photon;
@@ -21,8 +21,8 @@ use std::sync::Arc;
 /// One more photon is traced for so many, for vertices that are seen by indirect light alone.
 const SPARSE_STRIDE: u32 = 16;
 /// Ratio of the gather radii for indirect light and for what the camera sees, where the photons for one are among those
-/// for the other.
-const SPARSE_RADIUS: f32 = 2.0;
+/// for the other: the root of [`SPARSE_STRIDE`] for as many photons, times the scale for fewer.
+const SPARSE_RADIUS: f32 = 4.0 * INDIRECT_SCALE;
 /// Minimum cosine between the normals of a photon and of the vertex that gathers it.
 const MIN_NORMAL_COSINE: f32 = 0.5;
 /// Photons per task.

@@ -52,8 +52,8 @@ impl LightMeter {
         let hit = RayCaster::new(scene).intersect_filtered(&ray, RayFilter::seen(PassedBodies::All))?;
         let surface = scene.surface(&ray, &hit);
         let (object, part) = scene.object_and_part(&hit);
-        let side = if surface.normal.dot(direction) > 0.0 { -1.0 } else { 1.0 };
-        Some(SurfacePoint { object, part, position: surface.position + scene.origin, normal: surface.normal * side })
+        let normal = surface.facing_normal(direction);
+        Some(SurfacePoint { object, part, position: surface.position + scene.origin, normal })
     }
 
     /// Returns the direct light of one of [`LightMeter::sources`] at a point, from `samples` points of its emitter. A

@@ -19,8 +19,6 @@ use crate::raytrace::sampler::{self, Dimensions, SampleId, Sampler};
 use crate::raytrace::sink::RadianceSink;
 use glam::{DVec3, Vec3};
 
-/// Limits of the paths, far beyond the depth at which Russian roulette ends them.
-const PATHS: PathLimits = PathLimits { max_non_specular_depth: 4096, max_depth: 4096, split_factor: 1 };
 /// Limits of a path that finds the emission of the first surface alone.
 const FIRST_SURFACE: PathLimits = PathLimits { max_non_specular_depth: 0, max_depth: 0, split_factor: 1 };
 /// Photons have this place in the random numbers of a replicate; lights count upwards from 1.
@@ -142,7 +140,7 @@ impl RoundSampler<'_> {
         self.add_surrounds(&mut tracer.caster, direction, &mut sink);
         let mut sink = WeightedSink::new(&mut replicate.bounced, weight, sampler.id(), report);
         let gather = self.densities().map(|round| receptor.densities(direction, round));
-        tracer.trace_without_direct_light(receptor.origin, direction, &sampler, PATHS, gather, &mut sink);
+        tracer.trace_without_direct_light(receptor.origin, direction, &sampler, PathLimits::UNTIL_ROULETTE, gather, &mut sink);
 
         // The emission of the first surface, which the path includes, is direct light
         if self.studio.has_emission {

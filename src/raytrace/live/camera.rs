@@ -48,7 +48,7 @@ impl LiveCamera {
 
     /// Returns the same view for a tracer with this origin. From outside a room, its near walls are clipped.
     pub(super) fn around(self, origin: Vec3, room: Option<&Room>) -> Self {
-        let corners = room.map(|room| corners(room).map(|corner| corner - origin));
+        let corners = room.map(|room| room.bounds().map(|corner| corner - origin));
         let eye = self.frame.position() - origin;
         let outside = |[low, high]: &[Vec3; 2]| eye.cmplt(*low).any() || eye.cmpgt(*high).any();
         LiveCamera { origin, room: corners.filter(outside), ..self }
@@ -57,7 +57,7 @@ impl LiveCamera {
     /// Returns a good origin for the tracer: the eye, clamped to the room.
     pub(super) fn natural_origin(&self, room: Option<&Room>) -> Vec3 {
         let eye = self.frame.position();
-        room.map(corners).map_or(eye, |[low, high]| eye.max(low).min(high))
+        room.map(Room::bounds).map_or(eye, |[low, high]| eye.max(low).min(high))
     }
 
     /// Returns the scale of depth tolerances at a point, metres: its distance, shortened for long lenses.
@@ -103,12 +103,6 @@ impl PixelCamera for LiveCamera {
     fn pixel_m(&self) -> f32 {
         2.0 * self.frame.half_extent.x / self.size.0 as f32
     }
-}
-
-/// Returns the lower and upper corner of a room in world space.
-fn corners(room: &Room) -> [Vec3; 2] {
-    let half = 0.5 * Vec3::new(room.size_m.x, 0.0, room.size_m.z);
-    [-half, half + Vec3::Y * room.size_m.y]
 }
 
 /// Returns the distance at which a ray from outside enters a box; 0 where it misses it.

@@ -162,7 +162,7 @@ impl<'a> TileTracer<'a> {
         let is_view_dependent = material.transmits() || shows_emitter();
         PrimaryHit {
             position: surface.position,
-            normal: if surface.normal.dot(direction) > 0.0 { -surface.normal } else { surface.normal },
+            normal: surface.facing_normal(direction),
             object: scene.aggregate.instances()[hit.instance as usize].object,
             material: surface.material,
             alpha: if is_view_dependent { PrimaryHit::VIEW_DEPENDENT } else { scene.material_point(&surface).alpha },
