@@ -77,7 +77,7 @@ pub fn pays(scene: &RenderScene, camera: &FilmCamera) -> bool {
     let sum = |depth| arriving.iter().filter(|(at, _)| *at == depth).map(|(_, throughput)| throughput).sum::<f32>();
     let (second, third) = (sum(1), sum(2));
     let least = if scene.plan().split_factor > 1 { MIN_BRIGHTNESS_OF_SPLIT } else { MIN_BRIGHTNESS };
-    // Of little more than nothing, nothing can be said
+    // With too little bounced light the ratio below is noise
     second > MIN_BOUNCED * paths as f32 && third >= least * second
 }
 

@@ -20,12 +20,12 @@ const MAX_MOMENTS: usize = 16;
 const LONG_EDGE_PX: f32 = 2000.0;
 /// Blur that is left out, pixels.
 const UNSEEN_PX: f32 = 0.5;
-/// Part of the light within which the way of the water is measured.
-const MOST: f64 = 0.9;
+/// Part of the exposure's light within which the motion of the water is measured.
+const BLUR_LIGHT_PART: f64 = 0.9;
 /// Time constant of a flash that freezes everything, seconds.
 const FROZEN_S: f64 = 1e-7;
 /// Time constants after which the rest of a flash, a thousandth, counts as given.
-const END: f64 = 7.0;
+const FLASH_END_TIME_CONSTANTS: f64 = 7.0;
 
 /// The light of a lamp over time.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -73,7 +73,7 @@ impl Pulse {
 
     fn end_s(self) -> f64 {
         match self {
-            Pulse::Flash { decay_s } => END * decay_s,
+            Pulse::Flash { decay_s } => FLASH_END_TIME_CONSTANTS * decay_s,
             Pulse::Continuous { open_s } => open_s,
         }
     }
@@ -117,7 +117,7 @@ pub(super) fn of(scene: &Scene, assets: &Assets) -> Vec<Moment> {
     if pulses.is_empty() {
         return Vec::new();
     }
-    let blur_px = angular_speed * time_of(&pulses, MOST) as f32 * LONG_EDGE_PX;
+    let blur_px = angular_speed * time_of(&pulses, BLUR_LIGHT_PART) as f32 * LONG_EDGE_PX;
     if blur_px < UNSEEN_PX {
         return Vec::new();
     }

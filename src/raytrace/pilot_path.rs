@@ -33,9 +33,8 @@ impl PilotRaster {
 
     /// Returns the pixel of a place in the raster.
     pub fn pixel(&self, x: u32, y: u32) -> (u32, u32) {
-        let at = |place: u32, pixels: u32| {
-            (((f64::from(place) + 0.5) * self.stride) as u32).min(pixels.saturating_sub(1))
-        };
+        let at =
+            |place: u32, pixels: u32| (((f64::from(place) + 0.5) * self.stride) as u32).min(pixels.saturating_sub(1));
         (at(x, self.size.0), at(y, self.size.1))
     }
 }

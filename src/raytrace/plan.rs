@@ -9,7 +9,7 @@ use std::fmt;
 
 /// Part of the light after which further bounces are cut.
 const NEGLIGIBLE: f32 = 1.0 / 512.0;
-/// Paths from the first non-specular vertex, which share the path up to it: most noise is that of indirect light.
+/// Paths from the first non-specular vertex, which share the path up to it. Most noise is that of indirect light.
 /// Variance times seconds at 16 samples a pixel is the same with eight on plastic and in a matte room with a cache, whose
 /// first picture takes 1.6 times as long then; with mirrors and glass, whose noise is theirs, it is 1.25 times as much.
 const SPLIT_FACTOR: u32 = 4;
@@ -17,10 +17,10 @@ const SPLIT_FACTOR: u32 = 4;
 const SPLIT_FACTOR_WITH_MANY_LIGHTS: u32 = 8;
 /// The paths that leave a vertex are sampled at once, one a lane.
 const _: () = assert!(SPLIT_FACTOR_WITH_MANY_LIGHTS as usize <= LANES);
-/// Paths from there with people in the picture: most noise is that of the first vertices (which fibre, where a walk
-/// comes out, which of two surfaces in a pixel). Variance times rays at 4 samples a pixel, against two paths: 0.70 to
-/// 0.80 in the five studios three_point, rembrandt, high_key, group and butterfly; 1.13 to 1.5 in scenes without hair
-/// and skin.
+/// Paths from the first non-specular vertex where there is hair or skin: most noise is that of the first vertices (which
+/// fibre, where a walk comes out, which of two surfaces in a pixel). Variance times rays at 4 samples a pixel, against
+/// two paths: 0.70 to 0.80 in the five studios three_point, rembrandt, high_key, group and butterfly; 1.13 to 1.5 in
+/// scenes without hair and skin.
 const NO_SPLIT: u32 = 1;
 /// Largest reflectance from which on an irradiance cache may pay.
 const MIN_CACHED_ALBEDO: f32 = 0.5;

@@ -195,8 +195,8 @@ impl<'a> ShadowRay<'a> {
         }
         // The space beyond the last surface, up to the sun, is not inside of anything.
         let rest = if self.ray.t_max.is_finite() { self.ray.t_max } else { 0.0 };
-        let transmittance =
-            self.faces.transmittance(self.media.transmittance(&self.scene.materials, rest)) * self.coverage_transmittance;
+        let transmittance = self.faces.transmittance(self.media.transmittance(&self.scene.materials, rest))
+            * self.coverage_transmittance;
         let mut wavefront = self.wavefront;
         let mut miss = Vec3::ZERO;
         if let Target::Point(point) = self.query.target {

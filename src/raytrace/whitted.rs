@@ -198,12 +198,8 @@ mod tests {
             material,
             ..Object::new(format!("Body {id}"), Shape::Box { size_m })
         };
-        let camera = Camera {
-            position: Vec3::ZERO,
-            aim: Aim::Point(Vec3::NEG_Z),
-            focal_length_mm: 200.0,
-            ..Camera::default()
-        };
+        let camera =
+            Camera { position: Vec3::ZERO, aim: Aim::Point(Vec3::NEG_Z), focal_length_mm: 200.0, ..Camera::default() };
         let brightness = |objects| {
             let scene = Scene { objects, camera: camera.clone(), ..Scene::default() };
             let settings = Settings { width: 6, height: 4, spp: 4, method: Method::Whitted, ..Settings::default() };

@@ -4,7 +4,8 @@ use super::Arguments;
 use crate::cli::terminal::result;
 use crate::io::Loaded;
 use crate::raytrace::{
-    self, GeometryCache, PathEnd, PathEvent, PathVertex, Purpose, RenderScene, Replay, SampleId, ScatteringKind, Settings,
+    self, GeometryCache, PathEnd, PathEvent, PathVertex, Purpose, RenderScene, Replay, SampleId, ScatteringKind,
+    Settings,
 };
 use crate::scene::Scene;
 use anyhow::{Context, anyhow};

@@ -4,7 +4,8 @@ use crate::math::safe_sqrt;
 use glam::Vec3;
 
 /// Returns the reflected amplitudes (s, p) of a dielectric interface; `eta` is the index of the transmitted side over
-/// that of the incident side. Both are 1 under total internal reflection, whose phase is left out.
+/// that of the incident side (Born and Wolf, "Principles of Optics", section 1.5.2). Both are 1 under total internal
+/// reflection, whose phase is left out.
 #[inline(always)]
 pub fn amplitudes(cos_incident: f32, eta: f32) -> (f32, f32) {
     let cos_i = cos_incident.clamp(0.0, 1.0);

@@ -127,7 +127,7 @@ impl<'a> Bsdf<'a> {
     }
 
     /// Returns the shading normal on the side of the outgoing direction; zero for fibres, frosted glass and translucent
-    /// sheets, which scatter light from all directions, and for two normals.
+    /// sheets, which scatter light from all directions, and for a surface whose diffuse lobe has a normal of its own.
     pub fn normal(&self) -> Vec3 {
         match self {
             Bsdf::Surface(surface) if surface.has_relief() => Vec3::ZERO,

@@ -28,9 +28,9 @@ const ENOUGH: usize = 64;
 const WIDENINGS: [f32; 7] = [1.0, 4.0, 16.0, 64.0, 256.0, 1024.0, 4096.0];
 /// Rounds that learn from photons within the points' own radii; no more are needed.
 const EXACT_ROUNDS: u32 = 3;
-/// Camera paths that find what is visible: to learn from,
+/// Camera paths that find the visible points from which the density of starts is learned.
 const PATHS: u32 = 4096;
-/// and for its distance alone.
+/// Camera paths that find the distance of visible points alone.
 const FEW_PATHS: u32 = 256;
 /// Photons of a picture for each one to learn from.
 const PHOTONS_PER_LEARNING_PHOTON: u64 = 4;
@@ -61,7 +61,12 @@ pub struct CausticView {
 impl CausticView {
     /// The view of a camera. Photons start uniformly.
     pub fn unguided(scene: &RenderScene, camera: &impl PixelCamera) -> Self {
-        let visible = VisiblePoints::trace(scene, camera, FEW_PATHS);
+        Self::with_uniform_starts(scene, camera, FEW_PATHS)
+    }
+
+    /// The view of a camera by so many paths that find what is visible. Photons start uniformly.
+    fn with_uniform_starts(scene: &RenderScene, camera: &impl PixelCamera, paths: u32) -> Self {
+        let visible = VisiblePoints::trace(scene, camera, paths);
         let starts = StartDensity::default();
         CausticView { visible, starts, spacing: None, pixel_m: camera.pixel_m(), learning_photons: 0 }
     }
@@ -75,8 +80,7 @@ impl CausticView {
         seed: u32,
         control: &RenderControl,
     ) -> Self {
-        let mut view =
-            CausticView { visible: VisiblePoints::trace(scene, camera, PATHS), ..Self::unguided(scene, camera) };
+        let mut view = Self::with_uniform_starts(scene, camera, PATHS);
         let all = (photons / PHOTONS_PER_LEARNING_PHOTON).clamp(MIN_PHOTONS, MAX_PHOTONS);
         let tasks = (all as u32 / ROUNDS).div_ceil(TASK);
         let mut learner = StartLearner::new(scene);

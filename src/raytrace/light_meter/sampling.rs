@@ -140,7 +140,14 @@ impl RoundSampler<'_> {
         self.add_surrounds(&mut tracer.caster, direction, &mut sink);
         let mut sink = WeightedSink::new(&mut replicate.bounced, weight, sampler.id(), report);
         let gather = self.densities().map(|round| receptor.densities(direction, round));
-        tracer.trace_without_direct_light(receptor.origin, direction, &sampler, PathLimits::UNTIL_ROULETTE, gather, &mut sink);
+        tracer.trace_without_direct_light(
+            receptor.origin,
+            direction,
+            &sampler,
+            PathLimits::UNTIL_ROULETTE,
+            gather,
+            &mut sink,
+        );
 
         // The emission of the first surface, which the path includes, is direct light
         if self.studio.has_emission {

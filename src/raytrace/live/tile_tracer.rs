@@ -2,7 +2,7 @@
 
 use super::camera::LiveCamera;
 use super::history::ReprojectionHistory;
-use super::live_tile::{LiveTile, ConvergenceTarget};
+use super::live_tile::{ConvergenceTarget, LiveTile};
 use super::primary_hit::PrimaryHit;
 use super::refinement::RefinementStep;
 use crate::color::luminance;
