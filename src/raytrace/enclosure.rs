@@ -32,7 +32,7 @@ mod tests {
         let object = |id, shape, position| Object {
             id: ObjectId(id),
             transform: Transform::at(position),
-            ..Object::new("Thing", shape)
+            ..Object::new(format!("Thing {id}"), shape)
         };
         let scene = Scene {
             objects: vec![
