@@ -97,12 +97,15 @@ pub fn convert(light: &Light, assets: &Assets, camera: &Camera, unit: PowerUnit)
 }
 
 /// Sets emitter and modifier of a light and keeps its power; between finite and infinite emitters it keeps the exposure
-/// at the aim. A photometric file is taken off: it is of another luminaire.
+/// at the aim. A photometric file is taken off: it is of another luminaire. Sun and surround have no head, and only a
+/// surround has an environment map.
 pub fn change_emitter(scene: &Scene, assets: &Assets, light: &mut Light, emitter: Emitter, modifier: Modifier) {
     let before = readout::at_aim(scene, assets, light);
     light.photometric_file = None;
     let (was, is) = (light.emitter.is_infinite(), emitter.is_infinite());
     (light.emitter, light.modifier) = (emitter, modifier);
+    light.head = light.head.take().filter(|_| !is);
+    light.environment_map = light.environment_map.take().filter(|_| emitter == Emitter::Surround);
     if was == is {
         return;
     }
@@ -158,5 +161,26 @@ mod tests {
         assert!((readout::at_aim(&scene, &Assets::default(), &light).lux_s / lux_s - 1.0).abs() < 1e-3);
         change_emitter(&scene, &Assets::default(), &mut light, Emitter::Point, Modifier::loss(1.0));
         assert!((readout::at_aim(&scene, &Assets::default(), &light).lux_s / lux_s - 1.0).abs() < 1e-3);
+    }
+
+    #[test]
+    fn a_head_that_became_a_sun_stayed_on_it_and_a_map_stayed_on_what_is_no_surround() {
+        let scene = Scene::default();
+        let mut light = catalog::light_named("Softbox 60 x 90").unwrap();
+        let gear = crate::io::bundled_gear();
+        gear.heads[0].mount(&mut light);
+        let change = |light: &mut Light, emitter| {
+            change_emitter(&scene, &Assets::default(), light, emitter, Modifier::default());
+        };
+        change(&mut light, Emitter::RoundPanel { diameter_m: 0.9 });
+        assert!(light.head.is_some(), "another modifier before the same head");
+        change(&mut light, Emitter::Sun { angular_diameter_deg: 0.5 });
+        assert_eq!(light.head, None);
+        change(&mut light, Emitter::Surround);
+        light.environment_map = Some("sky.hdr".to_owned());
+        change(&mut light, Emitter::Surround);
+        assert!(light.environment_map.is_some());
+        change(&mut light, Emitter::Point);
+        assert_eq!(light.environment_map, None);
     }
 }
