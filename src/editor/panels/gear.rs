@@ -87,7 +87,7 @@ pub fn gear_ui(
 
 fn shortages_ui(ui: &mut Ui, shelf: &GearShelf, scene: &Scene) {
     if let Some(failure) = shelf.failure() {
-        ui.add(Label::new(RichText::new(failure).color(theme::BAD)).wrap());
+        ui.add(Label::new(RichText::new(failure).color(theme::bad(ui))).wrap());
     }
     if !shelf.list().has_own() {
         return;
@@ -97,7 +97,7 @@ fn shortages_ui(ui: &mut Ui, shelf: &GearShelf, scene: &Scene) {
         ui.label(RichText::new("What this studio uses of the list is there.").weak());
     }
     for text in missing {
-        ui.add(Label::new(RichText::new(text).color(theme::ACCENT)).wrap());
+        ui.add(Label::new(RichText::new(text).color(theme::accent(ui))).wrap());
     }
 }
 
@@ -177,7 +177,7 @@ fn row_ui(ui: &mut Ui, row: &GearRow, uses: &[GearUse], out: &mut Vec<Command>) 
     match (used, &row.entry) {
         (_, GearEntry::Support(_)) | (0, _) => drop(ui.label("")),
         (used, _) if used > row.owned && row.owned > 0 => {
-            drop(ui.label(RichText::new(used.to_string()).color(theme::ACCENT)));
+            drop(ui.label(RichText::new(used.to_string()).color(theme::accent(ui))));
         }
         (used, _) => drop(ui.label(used.to_string())),
     }

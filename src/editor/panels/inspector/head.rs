@@ -48,7 +48,7 @@ pub(super) fn head_row(ui: &mut Ui, scene: &Scene, gear: &GearList, light: &mut 
         gear_use(scene, gear).into_iter().find(|each| each.name == head.name && each.owned > 0)?.shortage()
     });
     if let Some(text) = short {
-        row(ui, "", "", |ui| ui.add(Label::new(RichText::new(text).color(theme::ACCENT).small()).wrap()));
+        row(ui, "", "", |ui| ui.add(Label::new(RichText::new(text).color(theme::accent(ui)).small()).wrap()));
     }
 }
 
@@ -126,7 +126,7 @@ pub(super) fn dial_rows(ui: &mut Ui, scene: &Scene, assets: &Assets, light: &mut
         }
     });
     if let Some(text) = head.and_then(|dial| beyond_text(&dial, light.power.dial_stops)) {
-        row(ui, "", "", |ui| ui.add(Label::new(RichText::new(text).color(theme::ACCENT).small()).wrap()));
+        row(ui, "", "", |ui| ui.add(Label::new(RichText::new(text).color(theme::accent(ui)).small()).wrap()));
     }
 }
 

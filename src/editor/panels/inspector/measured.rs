@@ -81,15 +81,15 @@ fn polar_plot(ui: &mut Ui, table: &IntensityTable) {
         let (sin, cos) = (degrees as f32).to_radians().sin_cos();
         clipped.line_segment([centre, centre + radius * vec2(sin, cos)], grid);
     }
-    let across = ui.visuals().weak_text_color();
-    for (planes, color) in [([90.0, 270.0], across), ([0.0, 180.0], theme::ACCENT)] {
+    let (accent, across) = (theme::accent(ui), ui.visuals().weak_text_color());
+    for (planes, color) in [([90.0, 270.0], across), ([0.0, 180.0], accent)] {
         clipped.add(Shape::line(curve(table, planes, centre, radius), Stroke::new(1.5, color)));
     }
     let text = |at: Pos2, align: Align2, text: String, color: Color32| {
         clipped.text(at, align, text, FontId::proportional(10.0), color);
     };
     text(rect.left_bottom(), Align2::LEFT_BOTTOM, format!("{} cd", three_digits(table.peak_cd())), across);
-    text(rect.right_bottom() - vec2(0.0, 12.0), Align2::RIGHT_BOTTOM, "C0".to_owned(), theme::ACCENT);
+    text(rect.right_bottom() - vec2(0.0, 12.0), Align2::RIGHT_BOTTOM, "C0".to_owned(), accent);
     text(rect.right_bottom(), Align2::RIGHT_BOTTOM, "C90".to_owned(), across);
     response.on_hover_text(
         "Intensity by direction: the axis is down, the outer ring the largest intensity. C0 is the plane to the light's \
