@@ -56,7 +56,7 @@ fn content_hash(asset: &Asset) -> u64 {
     match asset {
         // A tank may be made of a picture
         Asset::Mesh(mesh) | Asset::Tank(mesh) => mesh.hash_content(&mut hasher),
-        Asset::Texture(image) => (image.width, image.height, &image.rgb).hash(&mut hasher),
+        Asset::Texture(image) => (image.width, image.height, &image.rgb, &image.alpha).hash(&mut hasher),
         Asset::Photometry(table) => table.hash_content(&mut hasher),
         Asset::Environment(map) => map.hash_content(&mut hasher),
         // The scene holds all that it is made of
@@ -129,7 +129,9 @@ mod tests {
     use super::*;
     use crate::io::presets;
     use crate::raytrace::{RenderControl, Settings, empty_film, prepare, render, resume};
+    use crate::scene::{Texture, TextureRef};
     use std::ops::ControlFlow;
+    use std::sync::Arc;
 
     #[test]
     fn a_render_from_any_checkpoint_ends_in_the_same_bits_as_one_run() {
@@ -176,6 +178,13 @@ mod tests {
         assert!(empty_film(&prepared, &narrower).with_stored(&mut &bytes[..]).is_err());
         let mut brighter = loaded.scene.clone();
         brighter.lights[0].position.x += 0.1;
+        let with_mask = |alpha: Vec<u8>| {
+            let mut assets = loaded.assets.clone();
+            let image = Texture { alpha, ..Texture::opaque(2, 1, vec![[90; 3]; 2]) };
+            assets.insert_texture(TextureRef::file("leaf.png"), Arc::new(image));
+            RenderId::new(&loaded.scene, &assets, "a")
+        };
+        assert_ne!(with_mask(vec![255, 0]), with_mask(vec![0, 255]), "another cut-out mask of the same colours");
         for other in [id(&loaded.scene, "b"), id(&brighter, "a")] {
             assert!(read_checkpoint(&path, other).unwrap_err().contains("of another studio"));
         }
