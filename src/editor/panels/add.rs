@@ -189,7 +189,9 @@ fn tab_tip(tab: CatalogTab) -> &'static str {
         CatalogTab::Lights => "Softboxes, strips, dishes, bulbs, spots, windows, sun and sky",
         CatalogTab::Figures => "People, ready dressed and posed; everything about them can be changed",
         CatalogTab::Props => "Things to light: shapes, products, boards, reference balls and cards",
-        CatalogTab::Backdrops => "Paper rolls of 1.35, 2.72 and 3.55 m in white, grey and black",
+        CatalogTab::Backdrops => {
+            "Paper rolls in white, grey, black and colours, cloths, a painted canvas and a cyclorama"
+        }
     }
 }
 
