@@ -25,7 +25,7 @@ pub enum PlaceLightError {
     Behind,
     /// The point is the aim point.
     #[error("This is what the light is aimed at: its shadow falls farther behind.")]
-    AimReadout,
+    AtAimPoint,
     /// The light's position is below the floor.
     #[error("The light would have to stand in the floor.")]
     Floor,
@@ -60,9 +60,9 @@ pub fn placed_light(scene: &Scene, start: &Light, at: &SurfaceHit, by: PlaceLigh
         PlaceLightBy::Shadow => {
             let ray = aimed_at - at.point;
             if ray.length() < SAME_POINT_M {
-                return Err(PlaceLightError::AimReadout);
+                return Err(PlaceLightError::AtAimPoint);
             }
-            let direction = ray.try_normalize().ok_or(PlaceLightError::AimReadout)?;
+            let direction = ray.try_normalize().ok_or(PlaceLightError::AtAimPoint)?;
             if direction.dot(at.normal) <= 0.0 {
                 return Err(PlaceLightError::Behind);
             }
@@ -175,7 +175,7 @@ mod tests {
             assert_eq!(light.aim, start.aim);
         }
         let cap = SurfaceHit { object: ObjectId(0), point: nose, normal: Vec3::Z, t: 1.0 };
-        assert_eq!(placed_light(&scene, &start, &cap, PlaceLightBy::Shadow), Err(PlaceLightError::AimReadout));
+        assert_eq!(placed_light(&scene, &start, &cap, PlaceLightBy::Shadow), Err(PlaceLightError::AtAimPoint));
         let back = SurfaceHit { point: Vec3::new(0.2, 1.4, -2.0), normal: Vec3::NEG_Z, ..cap };
         assert_eq!(placed_light(&scene, &start, &back, PlaceLightBy::Shadow), Err(PlaceLightError::Behind));
     }
