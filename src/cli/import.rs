@@ -15,7 +15,8 @@ use std::path::{Path, PathBuf};
 #[derive(Debug, clap::Args)]
 #[command(verbatim_doc_comment)]
 pub struct Arguments {
-    /// The model: .glb, .gltf, .obj, .ply or .stl.
+    /// The model.
+    #[arg(help = format!("The model: {}", io::model_extension_list()))]
     model: PathBuf,
     /// The studio to write, a .ron file.
     #[arg(short, long, value_name = "SCENE.ron")]

@@ -2,9 +2,11 @@
 //!
 //! File dialogs, dropped files, mesh files of a scene and error messages all use this list.
 
+use super::environment::ENVIRONMENT_EXTENSIONS;
 use super::error::AssetError;
 use super::load_progress::LoadProgress;
 use super::model::{ImageReader, ImportedModel, ModelLimits};
+use super::photometric::PHOTOMETRIC_EXTENSIONS;
 use super::{gltf_model, obj, ply, stl};
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
@@ -156,7 +158,19 @@ pub fn model_format_names() -> String {
 
 /// Returns the extensions of all model formats for messages: `.obj`.
 pub fn model_extension_list() -> String {
-    model_extensions().iter().map(|extension| format!(".{extension}")).collect::<Vec<_>>().join(", ")
+    extension_list(model_extensions())
+}
+
+/// Returns the files that come into an open studio, with their extensions, for messages: `a model (.obj), a photometric
+/// file (.ies) or a panorama (.hdr)`.
+pub fn importable_files_text() -> String {
+    let [models, lights, panoramas] =
+        [model_extensions(), PHOTOMETRIC_EXTENSIONS, ENVIRONMENT_EXTENSIONS].map(extension_list);
+    format!("a model ({models}), a photometric file ({lights}) or a panorama ({panoramas})")
+}
+
+fn extension_list(extensions: &[&str]) -> String {
+    extensions.iter().map(|extension| format!(".{extension}")).collect::<Vec<_>>().join(", ")
 }
 
 fn format_of(path: &Path) -> Result<&'static ModelFormat, AssetError> {
@@ -183,6 +197,14 @@ mod tests {
         }
         assert_eq!(model_extensions().len(), MODEL_FORMATS.iter().map(|format| format.extensions.len()).sum::<usize>());
         assert!(ModelFormat::of(Path::new("obj")).is_none());
+    }
+
+    #[test]
+    fn files_that_come_into_a_studio_are_listed_with_every_extension_that_is_read() {
+        let text = importable_files_text();
+        for extension in model_extensions().iter().chain(PHOTOMETRIC_EXTENSIONS).chain(ENVIRONMENT_EXTENSIONS) {
+            assert!(text.contains(&format!(".{extension}")), "{extension}: {text}");
+        }
     }
 
     #[test]

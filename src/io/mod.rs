@@ -57,8 +57,8 @@ pub use error::{AssetError, LoadError, Problem, SaveError, reason};
 pub use file_stamp::FileStamp;
 pub use gear_file::{GearError, OWN_GEAR_FILE, bundled_gear, own_gear_path, read_gear, save_gear};
 pub use importers::{
-    MODEL_FORMATS, ModelFormat, import_model, import_model_with, model_extension_list, model_extensions,
-    model_format_names,
+    MODEL_FORMATS, ModelFormat, import_model, import_model_with, importable_files_text, model_extension_list,
+    model_extensions, model_format_names,
 };
 pub use kept_picture::KeptPicture;
 pub use load_progress::LoadProgress;

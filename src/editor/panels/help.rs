@@ -1,8 +1,11 @@
 //! The list of keys and mouse actions.
 
 use crate::editor::commands::shortcuts::{KEY_BINDINGS, KeyBinding};
+use crate::io;
 use eframe::egui::{self, Grid, RichText, ScrollArea, Ui, vec2};
 
+/// The action whose files [`mouse`] lists.
+const DROP: &str = "Drop a file";
 /// Mouse actions and held keys.
 const MOUSE: [(&str, &str); 19] = [
     ("Left click", "Select what is under the pointer"),
@@ -21,7 +24,7 @@ const MOUSE: [(&str, &str); 19] = [
     ("Click an end of the axes", "Look from there, without perspective"),
     ("Drag a number", "Change it; Shift: finely"),
     ("Click a number", "Type it, with any unit: 150 cm, 1.5 m, 5 ft"),
-    ("Drop a file", "A studio (.ron) or a rendered picture (.exr) opens, a model (.glb, .gltf, .obj) comes in"),
+    (DROP, "A studio (.ron) or a rendered picture (.exr) opens"),
     ("Esc in a dialog", "Close it"),
     ("Ctrl + plus, minus, 0", "Larger, smaller or usual texts and buttons"),
 ];
@@ -39,8 +42,10 @@ pub fn help_ui(ctx: &egui::Context, open: &mut bool) {
         .show(ctx, |ui| {
             ScrollArea::both().show(ui, |ui| {
                 ui.horizontal_top(|ui| {
-                    let mouse = MOUSE.map(|(keys, meaning)| (keys.to_owned(), meaning));
-                    let format = |binding: &KeyBinding| (ui.ctx().format_shortcut(&binding.shortcut), binding.meaning);
+                    let mouse = mouse();
+                    let format = |binding: &KeyBinding| {
+                        (ui.ctx().format_shortcut(&binding.shortcut), binding.meaning.to_owned())
+                    };
                     let listed = KEY_BINDINGS.iter().filter(|binding| !binding.meaning.is_empty());
                     let keys: Vec<_> = listed.map(format).collect();
                     // Two columns of about the same length.
@@ -53,11 +58,21 @@ pub fn help_ui(ctx: &egui::Context, open: &mut bool) {
         });
 }
 
-fn list<'a>(ui: &mut Ui, name: &str, lines: impl IntoIterator<Item = &'a (String, &'static str)>) {
+/// Returns the mouse actions; that of a dropped file names the formats that are read.
+fn mouse() -> Vec<(String, String)> {
+    let mut lines = MOUSE.map(|(keys, meaning)| (keys.to_owned(), meaning.to_owned())).to_vec();
+    if let Some((_, meaning)) = lines.iter_mut().find(|(keys, _)| keys == DROP) {
+        // Two lines, as wide as the others
+        *meaning += &format!(";\n{} comes in", io::importable_files_text().replace("), ", "),\n"));
+    }
+    lines
+}
+
+fn list<'a>(ui: &mut Ui, name: &str, lines: impl IntoIterator<Item = &'a (String, String)>) {
     Grid::new(name).num_columns(2).spacing([18.0, 3.0]).show(ui, |ui| {
         for (keys, meaning) in lines {
             ui.label(RichText::new(keys).strong());
-            ui.label(*meaning);
+            ui.label(meaning);
             ui.end_row();
         }
     });

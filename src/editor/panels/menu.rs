@@ -55,7 +55,7 @@ pub fn menu_ui(ui: &mut Ui, state: MenuState<'_>, out: &mut Vec<Command>) {
 fn file_menu(ui: &mut Ui, state: MenuState<'_>, out: &mut Vec<Command>) {
     ui.set_min_width(220.0);
     entry(ui, true, "New from preset\u{2026}", "Start from a set-up a photographer would name", Command::New, out);
-    entry(ui, true, "Open\u{2026}", "Open a studio from a .ron file", Command::Open, out);
+    entry(ui, true, "Open\u{2026}", OPEN_TIP, Command::Open, out);
     recent_menu(ui, state, out);
     ui.separator();
     entry(ui, true, "Save", "Write the studio to its file", Command::Save, out);
@@ -113,6 +113,7 @@ fn variants_menu(ui: &mut Ui, scene: &Scene, out: &mut Vec<Command>) {
     variants::entries(ui, scene, scene.variants.shown(), out);
 }
 
+const OPEN_TIP: &str = "Open a studio (.ron), or a rendered picture with its studio (.exr)";
 const DIALS_TIP: &str = "Name the f-number of the key and stops of the others; the dials follow from the meter";
 const AUDIT_TIP: &str = "How much of the light comes by walls, ceiling, floor and backdrops; spill and flare";
 const GEAR_TIP: &str = "The heads, modifiers and stands that you own: first on the shelf, and counted";
