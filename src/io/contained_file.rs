@@ -15,5 +15,5 @@ pub(super) fn find_in(path: &str, folder: Option<&Path>) -> Result<PathBuf, Asse
     let read_error = |error| AssetError::Read { error, path: folder.join(path) };
     let root = folder.canonicalize().map_err(read_error)?;
     let file = root.join(path).canonicalize().map_err(read_error)?;
-    if file.starts_with(&root) { Ok(file) } else { Err(bad_path("a link leads out of the scene's folder")) }
+    if file.starts_with(&root) { Ok(file) } else { Err(bad_path("a link leads out of the studio's folder")) }
 }

@@ -70,7 +70,7 @@ impl fmt::Display for Problem {
 #[derive(Debug, thiserror::Error)]
 pub enum LoadError {
     /// The file could not be read.
-    #[error("can't read the scene: {}: {}", reason(error), path.display())]
+    #[error("can't read the studio: {}: {}", reason(error), path.display())]
     Read {
         /// The reason.
         error: std::io::Error,
@@ -78,7 +78,7 @@ pub enum LoadError {
         path: PathBuf,
     },
     /// The file is larger than [`FILE_LIMIT_BYTES`](super::FILE_LIMIT_BYTES).
-    #[error("a scene file has at most {} MB, this has {} MB", limit_bytes / 1_000_000, bytes / 1_000_000)]
+    #[error("a studio's file has at most {} MB, this has {} MB", limit_bytes / 1_000_000, bytes / 1_000_000)]
     TooLarge {
         /// Its size.
         bytes: u64,
@@ -86,7 +86,7 @@ pub enum LoadError {
         limit_bytes: u64,
     },
     /// The file is not UTF-8 text.
-    #[error("this is no scene file: byte {0} is not text")]
+    #[error("this is no Catchlight studio: byte {0} is not text")]
     NotText(usize),
     /// The text is no usable scene: at least one problem, in file order.
     #[error("{}", list(.0))]
@@ -126,7 +126,7 @@ fn list(problems: &[Problem]) -> String {
 #[derive(Debug, thiserror::Error)]
 pub enum SaveError {
     /// The scene has an error, and would not load again.
-    #[error("the scene can't be saved before this is mended: {0}")]
+    #[error("the studio can't be saved before this is mended: {0}")]
     Invalid(Finding),
     /// The folder to write into does not exist.
     #[error("there is no such folder: {}", .0.display())]
@@ -188,7 +188,7 @@ pub enum AssetError {
         path: String,
     },
     /// The scene has no file yet, so there is no folder for relative paths.
-    #[error("save the scene first, then its folder is where files are looked for: {path:?}")]
+    #[error("save the studio first: its files are looked for beside it: {path:?}")]
     NoFolder {
         /// The path as the scene names it.
         path: String,

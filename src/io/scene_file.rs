@@ -92,7 +92,7 @@ pub fn parse_scene(text: &str) -> Result<(Scene, Vec<Finding>), LoadError> {
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
     let one = |problem| LoadError::Content(vec![problem]);
     let outline = locate::check_nesting(text).map_err(|locate::TooDeep(at)| {
-        one(problem_at(text, String::new(), "brackets nest too deep for a scene".to_owned(), at..at + 1))
+        one(problem_at(text, String::new(), "brackets nest too deep for a studio".to_owned(), at..at + 1))
     })?;
     check_format(text).map_err(one)?;
     let options = ron::Options::default().with_default_extension(ron::extensions::Extensions::IMPLICIT_SOME);
@@ -150,7 +150,7 @@ pub fn save_scene(scene: &Scene, path: &Path) -> Result<(), SaveError> {
 fn check_format(text: &str) -> Result<(), Problem> {
     let Some(range) = locate::exact_value_at(text, "format") else {
         let message =
-            if text.trim().is_empty() { "the file is empty" } else { "a scene file begins with `(format: 1,`" };
+            if text.trim().is_empty() { "the file is empty" } else { "a studio's file begins with `(format: 1,`" };
         return Err(problem_at(text, "format".to_owned(), message.to_owned(), 0..0));
     };
     let message = match text[range.clone()].parse::<u32>() {

@@ -316,9 +316,9 @@ pub fn path_complaint(path: &str) -> Option<&'static str> {
     } else if path.contains('\\') {
         Some("write / between folders")
     } else if path.starts_with('/') || path.chars().nth(1) == Some(':') {
-        Some("a path must be relative to the scene's folder")
+        Some("a path must be relative to the studio's folder")
     } else if path.split('/').any(|part| part == "..") {
-        Some("a path must not lead out of the scene's folder")
+        Some("a path must not lead out of the studio's folder")
     } else if path.chars().any(char::is_control) {
         Some("a path has no control characters")
     } else {

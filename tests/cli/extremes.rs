@@ -57,7 +57,7 @@ fn ten_thousand_equal_warnings_and_a_name_of_ten_megabytes_are_short_messages() 
 fn the_reason_why_a_file_cannot_be_read_is_printed_once_and_in_words() {
     let folder = tempfile::tempdir().unwrap();
     let output = catchlight(folder.path(), &["check", "nowhere.ron"]);
-    let message = "catchlight: can't read the scene: there is no such file: nowhere.ron\n";
+    let message = "catchlight: can't read the studio: there is no such file: nowhere.ron\n";
     assert_eq!(stderr(&output), message);
     let output = catchlight(folder.path(), &["chart", "--traversal", "nowhere.obj"]);
     assert!(!stderr(&output).contains("os error"), "{}", stderr(&output));
