@@ -140,7 +140,8 @@ impl<Q: Send + 'static, R: Send + 'static> Worker<Q, R> {
         }
     }
 
-    /// Cancels the current work and discards request and result.
+    /// Cancels the current work and discards request and result. Work that does not notice may still publish, unless by
+    /// [`Inbox::publish_unless_cancelled`].
     pub fn reset(&self) {
         let mut state = self.shared.lock();
         state.control.cancel();

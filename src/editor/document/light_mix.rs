@@ -109,8 +109,8 @@ impl Mix {
         Cow::Owned(mixed)
     }
 
-    /// Returns the action that makes the changes in the studio: dials, to the settings of their heads, colours and mutes. A solo is for judging alone. None
-    /// if there is nothing to change.
+    /// Returns the action that makes the changes in the studio: dials, set to what their heads have, colours and mutes;
+    /// none if there is nothing to change. Solos are not applied.
     pub fn action(&self, scene: &Scene) -> Option<Action> {
         let changed = scene.lights.iter().filter_map(|light| {
             let mut changed = self.fader(light.id).changed(light);

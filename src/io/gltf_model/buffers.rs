@@ -13,7 +13,6 @@ use percent_encoding::percent_decode_str;
 use serde_json::Value;
 use std::path::Path;
 
-/// Extensions whose content is read, or that can be left out of a picture.
 /// Extensions of materials that the crate does not read.
 const LAYER_EXTENSIONS: [&str; 4] = [
     "KHR_materials_anisotropy",
@@ -22,6 +21,7 @@ const LAYER_EXTENSIONS: [&str; 4] = [
     "KHR_materials_sheen",
 ];
 
+/// Extensions whose content is read, or that can be left out of a picture.
 const KNOWN_EXTENSIONS: [&str; 13] = [
     "KHR_lights_punctual",
     LAYER_EXTENSIONS[0],
