@@ -53,7 +53,7 @@ pub fn dress(
 /// and by an edge that is tucked in.
 fn fitted(data: &BodyData, figure: &Figure, body: &PosedBody, garment: Garment, positions: &[Vec3]) -> QuadMesh {
     let (edges, clothes) = (Edges::shipped(), Clothes::new(figure));
-    let is_skirt = garment == Garment::Bottom && clothes.bottom == Bottom::Skirt;
+    let is_skirt = garment == Garment::Bottom && clothes.bottom.hangs_from_waist();
     let group = if is_skirt { "helper-skirt" } else { "helper-tights" };
     let field = |v: u16| match garment {
         Garment::Bottom => edges.bottom(v, clothes.bottom),
@@ -66,7 +66,7 @@ fn fitted(data: &BodyData, figure: &Figure, body: &PosedBody, garment: Garment, 
     // Only the edges of collar and straps lie close: further out the garment hangs from the shoulders
     if garment == Garment::Top {
         let shoulders = shoulders(data, clothes.top, positions).skin();
-        let height_m = if clothes.top == Top::Straps { STRAP_M } else { COLLAR_M };
+        let height_m = if clothes.top.has_collar() { COLLAR_M } else { STRAP_M };
         patch.lay_on(&shoulders, height_m, &|v| edges.nearness_to_close_edge(v, clothes.top).powi(8));
     }
     let mobility = |v: u16| {
@@ -93,7 +93,7 @@ fn band_of<'a>(
     let (is_unseen, is_held, lies_close) = (unseen > 0.5, mobility < 0.1, closeness > 0.5);
     match garment {
         _ if is_unseen => None,
-        Garment::Top if lies_close && clothes.top != Top::Straps => Some(Band::Collar(neck)),
+        Garment::Top if lies_close && clothes.top.has_collar() => Some(Band::Collar(neck)),
         Garment::Top if !lies_close => Some(Band::Hem),
         Garment::Bottom if is_held => None,
         // Trousers bend over the shoes

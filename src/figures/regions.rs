@@ -162,7 +162,7 @@ impl Edges {
     pub fn is_tucked_in(&self, vertex: u16, clothes: Clothes) -> bool {
         let is_arm = matches!(self.place(vertex), Place::Arm(_));
         let is_by_hem = self.to_hem(vertex, clothes.bottom) < self.to_neckline(vertex, clothes.top);
-        clothes.bottom == Bottom::Skirt && !is_arm && is_by_hem
+        clothes.bottom.hangs_from_waist() && !is_arm && is_by_hem
     }
 
     /// Returns the distance from the opening for the neck: a ball round its base, lower in front for straps.
@@ -229,7 +229,7 @@ impl Edges {
         match (garment, self.place(vertex)) {
             (Garment::Shoe, _) => 0.0,
             (Garment::Top, Place::Arm(at)) if top != Top::ShortSleeves => to_sleeve_end(at, top),
-            (Garment::Top, _) if bottom == Bottom::Skirt => {
+            (Garment::Top, _) if bottom.hangs_from_waist() => {
                 self.to_neckline(vertex, top).min(self.to_hem(vertex, bottom))
             }
             (Garment::Top, _) => self.to_neckline(vertex, top),
@@ -244,7 +244,7 @@ impl Edges {
     pub fn looseness(&self, vertex: u16, garment: Garment, Clothes { top, bottom }: Clothes) -> f32 {
         let from_edge = 1.0 - self.nearness_to_close_edge(vertex, top);
         // A top that is tucked in is tight there
-        let tuck = if bottom == Bottom::Skirt { (self.to_hem(vertex, bottom) / 0.06).clamp(0.2, 1.0) } else { 1.0 };
+        let tuck = if bottom.hangs_from_waist() { (self.to_hem(vertex, bottom) / 0.06).clamp(0.2, 1.0) } else { 1.0 };
         match (garment, self.place(vertex)) {
             (Garment::Shoe, _) => 0.003,
             (Garment::Top, Place::Arm(at)) => 0.006 + 0.006 * at.min(1.0),
@@ -253,7 +253,7 @@ impl Edges {
                 (0.001 + 0.006 * from_edge + 0.012 * (0.6 - height).clamp(0.0, 0.6)) * tuck
             }
             (Garment::Top, Place::Leg(_)) => 0.014,
-            (Garment::Bottom, _) if bottom == Bottom::Skirt => 0.006,
+            (Garment::Bottom, _) if bottom.hangs_from_waist() => 0.006,
             (Garment::Bottom, Place::Leg(at)) => 0.005 + 0.009 * at.clamp(0.0, 2.0),
             (Garment::Bottom, _) => 0.005,
         }

@@ -25,6 +25,28 @@ pub enum Top {
     Straps,
 }
 
+impl Top {
+    /// All upper garments.
+    pub const ALL: [Top; 3] = [Top::LongSleeves, Top::ShortSleeves, Top::Straps];
+
+    /// Returns its label.
+    pub fn label(self) -> &'static str {
+        match self {
+            Top::LongSleeves => "Long sleeves",
+            Top::ShortSleeves => "Short sleeves",
+            Top::Straps => "Straps",
+        }
+    }
+
+    /// Returns true if its neckline has a collar that stands off the skin; straps lie on it.
+    pub fn has_collar(self) -> bool {
+        match self {
+            Top::LongSleeves | Top::ShortSleeves => true,
+            Top::Straps => false,
+        }
+    }
+}
+
 /// Lower garment.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum Bottom {
@@ -35,6 +57,29 @@ pub enum Bottom {
     Shorts,
     /// A skirt to the knee.
     Skirt,
+}
+
+impl Bottom {
+    /// All lower garments.
+    pub const ALL: [Bottom; 3] = [Bottom::Trousers, Bottom::Shorts, Bottom::Skirt];
+
+    /// Returns its label.
+    pub fn label(self) -> &'static str {
+        match self {
+            Bottom::Trousers => "Trousers",
+            Bottom::Shorts => "Shorts",
+            Bottom::Skirt => "Skirt",
+        }
+    }
+
+    /// Returns true if it hangs from the waist and covers the thighs without touching them, with the top tucked in; false
+    /// for trousers, which the top hangs over.
+    pub fn hangs_from_waist(self) -> bool {
+        match self {
+            Bottom::Skirt => true,
+            Bottom::Trousers | Bottom::Shorts => false,
+        }
+    }
 }
 
 /// Hair of the head.
@@ -57,6 +102,32 @@ pub enum HairStyle {
     Curly,
 }
 
+impl HairStyle {
+    /// All styles.
+    pub const ALL: [HairStyle; 7] = [
+        HairStyle::Bald,
+        HairStyle::Crop,
+        HairStyle::Short,
+        HairStyle::Bob,
+        HairStyle::Long,
+        HairStyle::TiedBack,
+        HairStyle::Curly,
+    ];
+
+    /// Returns its label.
+    pub fn label(self) -> &'static str {
+        match self {
+            HairStyle::Bald => "Bald",
+            HairStyle::Crop => "Crop",
+            HairStyle::Short => "Short",
+            HairStyle::Bob => "Bob",
+            HairStyle::Long => "Long",
+            HairStyle::TiedBack => "Tied back",
+            HairStyle::Curly => "Curly",
+        }
+    }
+}
+
 /// Hair of the face.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum Beard {
@@ -67,6 +138,20 @@ pub enum Beard {
     Stubble,
     /// A full beard.
     Full,
+}
+
+impl Beard {
+    /// All beards.
+    pub const ALL: [Beard; 3] = [Beard::None, Beard::Stubble, Beard::Full];
+
+    /// Returns its label.
+    pub fn label(self) -> &'static str {
+        match self {
+            Beard::None => "None",
+            Beard::Stubble => "Stubble",
+            Beard::Full => "Full",
+        }
+    }
 }
 
 /// The part of a figure that is there.

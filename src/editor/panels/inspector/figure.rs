@@ -218,29 +218,16 @@ fn pose_rows(ui: &mut Ui, figure: &mut Figure) -> bool {
 
 fn clothes_rows(ui: &mut Ui, figure: &mut Figure) {
     row(ui, "Top", "Colours are those of its parts, below", |ui| {
-        let choices =
-            [("Long sleeves", Top::LongSleeves), ("Short sleeves", Top::ShortSleeves), ("Straps", Top::Straps)];
-        picker(ui, "top", choices.into_iter(), &mut figure.top);
+        picker(ui, "top", Top::ALL.into_iter().map(|top| (top.label(), top)), &mut figure.top);
     });
     row(ui, "Below", "", |ui| {
-        let choices = [("Trousers", Bottom::Trousers), ("Shorts", Bottom::Shorts), ("Skirt", Bottom::Skirt)];
-        picker(ui, "bottom", choices.into_iter(), &mut figure.bottom);
+        picker(ui, "bottom", Bottom::ALL.into_iter().map(|bottom| (bottom.label(), bottom)), &mut figure.bottom);
     });
     row(ui, "Hair", "", |ui| {
-        let choices = [
-            ("Bald", HairStyle::Bald),
-            ("Crop", HairStyle::Crop),
-            ("Short", HairStyle::Short),
-            ("Bob", HairStyle::Bob),
-            ("Long", HairStyle::Long),
-            ("Tied back", HairStyle::TiedBack),
-            ("Curly", HairStyle::Curly),
-        ];
-        picker(ui, "hair", choices.into_iter(), &mut figure.hair);
+        picker(ui, "hair", HairStyle::ALL.into_iter().map(|hair| (hair.label(), hair)), &mut figure.hair);
     });
     row(ui, "Beard", "", |ui| {
-        let choices = [("None", Beard::None), ("Stubble", Beard::Stubble), ("Full", Beard::Full)];
-        picker(ui, "beard", choices.into_iter(), &mut figure.beard);
+        picker(ui, "beard", Beard::ALL.into_iter().map(|beard| (beard.label(), beard)), &mut figure.beard);
     });
 }
 
