@@ -91,11 +91,13 @@ impl Names<'_> {
     /// One event as a line of text.
     fn line(&self, event: &PathEvent) -> String {
         match event {
+            // Where the path goes
             PathEvent::CameraRay { origin, direction } => {
                 format!("camera ray from {} towards {}", triple(*origin), triple(*direction))
             }
             PathEvent::Vertex(vertex) => self.vertex(vertex),
             PathEvent::Miss => "the ray leaves the studio".to_owned(),
+            // Light that it finds
             PathEvent::VisibleEmitter { light, distance } => {
                 format!("  visible emitter: {} at {distance} m", self.light(*light))
             }
@@ -112,6 +114,7 @@ impl Names<'_> {
                 )
             }
             PathEvent::PhotonGather { radius } => format!("  photons within {radius} m"),
+            // How it goes on
             PathEvent::BsdfSample { lobe, direction, pdf, weight, throughput } => {
                 let pdf = pdf.map_or("delta".to_owned(), |pdf| format!("pdf {pdf} /sr"));
                 format!(
@@ -143,6 +146,7 @@ impl Names<'_> {
             PathEvent::Roulette { survival, u } => {
                 format!("  Russian roulette: survival probability {survival}, u {u}")
             }
+            // Its end and what it adds to the pixel
             PathEvent::End(end) => format!("path ends: {}", end_name(*end)),
             PathEvent::Contribution { layer, value } => {
                 let name = self.prepared.layers().get(*layer).map_or("?", |layer| &layer.name);

@@ -39,6 +39,7 @@ impl PresetPicker {
         out: &mut Vec<Command>,
     ) {
         let Some(marked) = self.marked else { return };
+        // Take the arrow keys and Enter, for the list as it was drawn last
         let before = found(presets, &self.query);
         let mut marked = moved_by_key(ctx, &before, marked);
         let by_key = Some(marked) != self.marked;
@@ -53,11 +54,13 @@ impl PresetPicker {
                 RichText::new("Each is a lit studio to start from. Your own file comes into being when you save.")
                     .weak(),
             );
+            // Draw the search field, which has the focus unless something else has it
             let field = search_ui(ui, "Search studios", &mut self.query);
             if ui.memory(|memory| memory.focused().is_none()) {
                 field.request_focus();
             }
             ui.separator();
+            // Draw the list, by group; a search that hides the marked studio marks the first
             let shown = found(presets, &self.query);
             if !shown.contains(&marked) {
                 marked = shown.first().copied().unwrap_or(0);
@@ -86,6 +89,7 @@ impl PresetPicker {
                     }
                 }
             });
+            // Draw the buttons
             ui.separator();
             ui.horizontal(|ui| {
                 if ui.add_enabled(!shown.is_empty(), Button::new("Open this studio")).clicked() {
@@ -101,6 +105,7 @@ impl PresetPicker {
                 }
             });
         });
+        // Close the list after a choice, and open the chosen studio
         let closes = choice.is_some() || modal.should_close();
         self.marked = (!closes).then_some(marked);
         if let Some(index) = choice {

@@ -319,6 +319,7 @@ impl Viewport {
     }
 
     fn paint(&mut self, ui: &mut Ui, rect: Rect, frame: CameraFrame, picture: Option<Rect>, input: ViewportInput<'_>) {
+        // Update the images of the live view and its scopes, and draw them
         let painter = ui.painter_at(rect);
         let pixels = rect.size() * ui.pixels_per_point();
         let size = ((pixels.x.round() as u32).max(1), (pixels.y.round() as u32).max(1));
@@ -341,23 +342,20 @@ impl Viewport {
             painter.image(texture, rect, uv, Color32::WHITE);
         }
         self.preview.paint_over(&painter, rect);
+        // Draw notes over the image
+        let font = FontId::proportional(13.0);
         let is_lit_view = self.preview.view_options.channel == Channel::Lit;
         let shows_work_light = has_work_light && is_lit_view && is_dark(input.document.scene());
         if shows_work_light && traced.is_none() && self.preview.failure().is_none() {
             let at = rect.center_bottom() - vec2(0.0, 14.0);
             let text = "No light is on. This is a work light, which pictures do not have.";
-            painter.text(at, Align2::CENTER_BOTTOM, text, FontId::proportional(13.0), theme::ACCENT);
+            painter.text(at, Align2::CENTER_BOTTOM, text, font.clone(), theme::ACCENT);
         }
         if traced.or(preview).is_none() {
             let text = "Preparing the live view\u{2026}";
-            painter.text(
-                rect.center(),
-                Align2::CENTER_CENTER,
-                text,
-                FontId::proportional(13.0),
-                Color32::from_gray(140),
-            );
+            painter.text(rect.center(), Align2::CENTER_CENTER, text, font, Color32::from_gray(140));
         }
+        // Draw the picture's frame, the plan's grid and distances, and how far the traced view is
         let scene = input.document.scene();
         if let Some(picture) = picture {
             markers::paint_picture_frame(&painter, rect, picture);
@@ -370,6 +368,7 @@ impl Viewport {
         if traced.is_some() || self.traced_view.has_failed() {
             markers::paint_note(&painter, rect, &self.traced_view.status(), side.is_some());
         }
+        // Draw labels, or, through a light, its beam
         if let CentralView::Light(id) = input.central_view {
             if let Some(light) = scene.light(id) {
                 let distance_m = scene.aim_vector(&light.aim, light.position).length();
@@ -382,6 +381,7 @@ impl Viewport {
             let all = input.central_view == CentralView::Studio;
             markers::paint_labels(&painter, scene, &frame, rect, input.selection, all, side.is_none());
         }
+        // Draw the meter, the tool in use or the handles, and the box of a selection
         markers::paint_meter(&painter, scene, &frame, rect);
         if let Some(tool) = &self.tool {
             tool.paint(&painter, scene, &frame, rect);

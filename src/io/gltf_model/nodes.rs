@@ -121,6 +121,7 @@ impl NodePrimitive<'_> {
     /// # Errors
     /// If the data are damaged, or if there are too many triangles.
     pub fn mesh(&self, file: &ModelFile, nodes: &Nodes<'_>, most_triangles: usize) -> Result<Mesh, String> {
+        // Read the vertices and the triangles
         accessors::check(file, &self.primitive)?;
         let reader = self.primitive.reader(|buffer| Some(file.bytes(&buffer)));
         let mut positions: Vec<Vec3> = reader.read_positions().ok_or("it has no positions")?.map(Vec3::from).collect();
@@ -131,7 +132,7 @@ impl NodePrimitive<'_> {
             return Err("it has too many triangles".to_owned());
         }
 
-        // Blend the morph targets and the joints
+        // Add the morph targets, each by its weight
         let mesh = self.node.mesh();
         let weights = self.node.weights().or_else(|| mesh.as_ref().and_then(|mesh| mesh.weights()));
         for ((offsets, normal_offsets, _), weight) in reader.read_morph_targets().zip(weights.unwrap_or_default()) {
@@ -142,6 +143,8 @@ impl NodePrimitive<'_> {
             let normal_offsets = normal_offsets.into_iter().flatten().enumerate();
             normal_offsets.for_each(|(at, offset)| add(&mut normals, offset, at));
         }
+
+        // Blend the matrices of each vertex's joints; without a skin all vertices have that of the node
         let skin = self.node.skin().zip(reader.read_joints(0)).zip(reader.read_weights(0));
         let world = nodes.world[self.node.index()];
         let transforms: Vec<Mat4> = match skin {
@@ -159,6 +162,8 @@ impl NodePrimitive<'_> {
             }
             None => vec![world],
         };
+
+        // Transform normals and positions into world space
         let transform = |at: usize| transforms.get(at).or(transforms.first()).copied().unwrap_or(world);
         let is_mirrored = transform(0).determinant() < 0.0;
         for (at, normal) in normals.iter_mut().enumerate() {
@@ -168,8 +173,11 @@ impl NodePrimitive<'_> {
             *position = transform(at).transform_point3(*position);
         }
 
+        // Turn the triangles of a mirrored node, so that their fronts stay in front
         let turned = |[a, b, c]: [u32; 3]| if is_mirrored { [a, c, b] } else { [a, b, c] };
         let triangles = triangles.into_iter().map(turned).collect();
+
+        // Read texture coordinates and colours; those that are missing or damaged are left out
         let has_normals = normals.len() == vertices && normals.iter().all(|normal| normal.is_normalized());
         let sets = UvSets::of(file, &self.primitive.material());
         let uvs = self.uvs(file, sets.first.or(Some(0)), vertices);

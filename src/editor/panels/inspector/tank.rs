@@ -125,6 +125,7 @@ fn ground_rows(ui: &mut Ui, tank: &mut Tank) {
     let height = |ui: &mut Ui, label: &str, tip: &str, value: &mut f32| {
         row(ui, label, tip, |ui| NumberField::new(0.2, 0.0, 10_000.0, 1, " cm").scaled_ui(ui, value, 100.0));
     };
+    // Draw the kinds of ground
     let before = match tank.terrain {
         Terrain::Flat { .. } => GroundKind::Flat,
         Terrain::Basin { .. } => GroundKind::Basin,
@@ -141,6 +142,7 @@ fn ground_rows(ui: &mut Ui, tank: &mut Tank) {
         ];
         widgets::choice(ui, &mut kind, &kinds);
     });
+    // Another kind starts with heights that fit the tank
     let top_m = tank.size_m().y;
     if kind != before {
         tank.terrain = match kind {
@@ -154,6 +156,7 @@ fn ground_rows(ui: &mut Ui, tank: &mut Tank) {
             }
         };
     }
+    // Draw the rows of the kind
     match &mut tank.terrain {
         Terrain::Picture { path, low_m, high_m } => {
             row(ui, "File", "A picture beside the studio's file, such as heights.png", |ui| {
