@@ -21,6 +21,15 @@ pub enum DialScale {
     PerCent,
 }
 
+/// The end of a dial that a power lies beyond.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum BeyondDial {
+    /// More than full power.
+    Full,
+    /// Less than the lowest setting.
+    Lowest,
+}
+
 /// The dial of a head.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HeadDial {
@@ -39,6 +48,17 @@ impl HeadDial {
     /// Returns the range, stops from full power.
     pub fn range(&self) -> RangeInclusive<f32> {
         self.lowest_stops..=0.0
+    }
+
+    /// Returns the end that a power lies beyond, stops from full power; none if the head can be set to it.
+    pub fn beyond(&self, stops: f32) -> Option<BeyondDial> {
+        /// Of a dial in thirds, stops.
+        const ROUNDING: f32 = 1e-3;
+        match stops {
+            stops if stops > ROUNDING => Some(BeyondDial::Full),
+            stops if stops < self.lowest_stops - ROUNDING => Some(BeyondDial::Lowest),
+            _ => None,
+        }
     }
 
     /// Returns the distance of two settings about a power, stops.
@@ -98,6 +118,8 @@ mod tests {
         assert_eq!([thirds.nearest(0.4), thirds.nearest(-12.0)], [0.0, -7.0]);
         assert!((thirds.moved(-1.0, -0.7) + 5.0 / 3.0).abs() < 1e-6);
         assert!((thirds.moved(-1.0, 0.1) + 2.0 / 3.0).abs() < 1e-6, "at least a setting");
+        assert_eq!([-7.0005, -3.0, 0.0005].map(|stops| thirds.beyond(stops)), [None; 3]);
+        assert_eq!([-7.1, 0.1].map(|stops| thirds.beyond(stops)), [Some(BeyondDial::Lowest), Some(BeyondDial::Full)]);
         let led = HeadDial { scale: DialScale::PerCent, lowest_stops: 0.01_f32.log2(), steps_per_stop: 1 };
         assert!((led.nearest(-1.02).exp2() - 0.49).abs() < 1e-6);
         assert!((led.moved(-1.0, 1.0 / 3.0).exp2() - 0.63).abs() < 1e-6);

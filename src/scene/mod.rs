@@ -59,7 +59,7 @@ pub use figure::{
 };
 pub use focused_lens::FocusedLens;
 pub use gel::{Gel, GelFamily, NamedGel};
-pub use head::{DialScale, Head, HeadDial};
+pub use head::{BeyondDial, DialScale, Head, HeadDial};
 pub use id::{LightId, ObjectId};
 pub use intensity_table::IntensityTable;
 pub use inventory::{AssetField, MaterialSlot};

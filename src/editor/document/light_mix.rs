@@ -3,12 +3,9 @@
 use crate::editor::document::action::Action;
 use crate::photo::dial_text;
 use crate::raytrace::Layer;
-use crate::scene::{ColorSource, Light, LightId, Scene};
+use crate::scene::{BeyondDial, ColorSource, Light, LightId, Scene};
 use std::borrow::Cow;
 use std::collections::{HashMap, HashSet};
-
-/// Rounding of a dial in thirds, stops.
-const ROUNDING: f32 = 1e-3;
 
 /// The change of a light.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -131,16 +128,13 @@ impl Mix {
         let fader = self.fader(light.id);
         let stops = fader.changed(light).power.dial_stops;
         let dial = light.dial();
-        if fader.thirds == 0 {
-            None
-        } else if stops > ROUNDING {
-            Some(format!("{stops:.1} stops over the head's full power"))
-        } else if stops < dial.lowest_stops - ROUNDING {
-            let lowest = dial_text(&dial, dial.lowest_stops);
-            Some(format!("Under {lowest}, the lowest that the head can be set to"))
-        } else {
-            None
-        }
+        Some(match dial.beyond(stops).filter(|_| fader.thirds != 0)? {
+            BeyondDial::Full => format!("{stops:.1} stops over the head's full power"),
+            BeyondDial::Lowest => {
+                let lowest = dial_text(&dial, dial.lowest_stops);
+                format!("Under {lowest}, the lowest that the head can be set to")
+            }
+        })
     }
 }
 

@@ -8,7 +8,7 @@ use crate::gear::{GearList, HeadModel, gear_use};
 use crate::photo::text::{power_fraction, signed_stops};
 use crate::photo::thirds::Dial;
 use crate::photo::{dial_from_text, dial_text};
-use crate::scene::{Assets, Head, HeadDial, Light, Output, Scene};
+use crate::scene::{Assets, BeyondDial, Head, HeadDial, Light, Output, Scene};
 use eframe::egui::{ComboBox, Label, RichText, Slider, SliderClamping, Ui};
 
 /// Draws the list of heads: those that the user owns come first.
@@ -132,12 +132,8 @@ pub(super) fn dial_rows(ui: &mut Ui, scene: &Scene, assets: &Assets, light: &mut
 
 /// Returns a sentence about a setting that the head does not have; none if it has it.
 fn beyond_text(dial: &HeadDial, stops: f32) -> Option<String> {
-    const ROUNDING: f32 = 1e-3;
-    match stops {
-        stops if stops > ROUNDING => Some("More than the head's full power".to_owned()),
-        stops if stops < dial.lowest_stops - ROUNDING => {
-            Some(format!("Less than {}, the lowest of the head", dial_text(dial, dial.lowest_stops)))
-        }
-        _ => None,
-    }
+    Some(match dial.beyond(stops)? {
+        BeyondDial::Full => "More than the head's full power".to_owned(),
+        BeyondDial::Lowest => format!("Less than {}, the lowest of the head", dial_text(dial, dial.lowest_stops)),
+    })
 }
