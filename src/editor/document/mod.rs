@@ -7,6 +7,7 @@ pub mod bounds;
 pub mod catalog;
 pub mod clipboard;
 pub mod dial_wishes;
+pub mod dials_together;
 pub mod environment;
 pub mod files;
 pub mod framing;

@@ -23,6 +23,7 @@ mod unit_slider;
 use crate::editor::commands::choices::Brush;
 use crate::editor::commands::command::Command;
 use crate::editor::document::action::Action;
+use crate::editor::document::dials_together::turned_together;
 use crate::editor::document::item::{Item, name_of_all};
 use crate::editor::document::selection::Selection;
 use crate::editor::document::studio_document::Document;
@@ -125,13 +126,11 @@ fn several_lights_ui(ui: &mut Ui, out: &mut Vec<Command>, lights: &[&Light]) {
             ("+\u{2153}", "All a third of a stop more", third),
             ("+1", "All a stop more", 1.0),
         ] {
-            if small_button(ui, text, name).on_hover_text(name).clicked() {
-                let dimmed = |light: &&Light| {
-                    let mut light = (*light).clone();
-                    light.power.dial_stops += stops;
-                    Action::SetLight(Box::new(light))
-                };
-                let actions = lights.iter().map(dimmed).collect();
+            let turned = turned_together(lights, stops);
+            let button = ui.add_enabled_ui(turned.is_some(), |ui| small_button(ui, text, name)).inner;
+            let button = button.on_disabled_hover_text("One of the heads can't be set so far: the ratios would change");
+            if let Some(turned) = turned.filter(|_| button.on_hover_text(name).clicked()) {
+                let actions = turned.into_iter().map(|light| Action::SetLight(Box::new(light))).collect();
                 out.push(Command::Apply(Action::Together { label: format!("Turn {} lights", lights.len()), actions }));
             }
         }
