@@ -11,6 +11,8 @@ use crate::scene::{LightId, Role, Scene};
 
 /// Lux per foot-candle (lumen per square foot).
 pub const LUX_PER_FOOT_CANDLE: f32 = 10.763_91;
+/// Metres in a foot.
+pub const FOOT_M: f32 = 0.3048;
 
 impl Receptor {
     /// Returns the response to light relative to its normal illuminance, by the cosine between the light's direction

@@ -1,9 +1,9 @@
 //! Lengths as text, in metres or in feet and inches.
 
+use crate::photo::meter::FOOT_M;
+
 /// Metres in an inch.
 const INCH_M: f32 = 0.0254;
-/// Metres in a foot.
-const FOOT_M: f32 = 0.3048;
 
 /// Distance under which centimetres and inches have a decimal, metres: close-ups.
 const NEAR_M: f32 = 0.5;

@@ -3,9 +3,6 @@
 use crate::sheet::Units;
 use eframe::egui::{Context, Id};
 
-/// Metres in a foot.
-pub const FOOT_M: f32 = 0.3048;
-
 /// Sets the units of the window.
 pub fn set_units(ctx: &Context, units: Units) {
     ctx.data_mut(|data| data.insert_temp(Id::unique("units of lengths"), units));

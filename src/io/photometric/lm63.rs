@@ -4,11 +4,11 @@ use super::PhotometricFile;
 use super::goniometer::{Goniometer, Kind};
 use super::numbers::{Numbers, lines, scaled};
 use super::symmetry::{Plane, Symmetry, full_circle};
+use crate::photo::meter::FOOT_M;
 use crate::scene::{Emitter, IntensityTable};
 
 /// Largest number of angles of one axis.
 const MOST_ANGLES: usize = 10_000;
-const METRES_PER_FOOT: f32 = 0.3048;
 
 /// Parses a file.
 pub(super) fn parse(bytes: &[u8]) -> Result<PhotometricFile, String> {
@@ -67,8 +67,7 @@ fn parse_photometry(
     let vertical_count = numbers.count("the number of vertical angles", 2, MOST_ANGLES)?;
     let horizontal_count = numbers.count("the number of horizontal angles", 1, MOST_ANGLES)?;
     let kind = numbers.count("the photometric type (1 C, 2 B, 3 A)", 1, 3)?;
-    let unit_m =
-        if numbers.count("the unit of lengths (1 feet, 2 metres)", 1, 2)? == 1 { METRES_PER_FOOT } else { 1.0 };
+    let unit_m = if numbers.count("the unit of lengths (1 feet, 2 metres)", 1, 2)? == 1 { FOOT_M } else { 1.0 };
     let size = numbers.list("the size of the luminous opening", 3)?;
     let ballast = numbers.number("the ballast factor")?;
     // The ballast-lamp photometric factor of 1986 and 1991; 1 in 1995 and 2002; the type of the file in 2019
