@@ -3,6 +3,9 @@
 use crate::photo::light::axial_intensity;
 use crate::scene::{ColorSource, Emitter, Head, Light, Modifier, NamedModifier, Output};
 
+/// Most pieces of an entry that a user owns.
+pub const MOST_OWNED: u32 = 999;
+
 /// A head of the list.
 #[derive(Clone, Debug, PartialEq)]
 pub struct HeadModel {

@@ -6,5 +6,5 @@
 mod list;
 mod shortage;
 
-pub use list::{GearList, HeadModel, ModifierModel, Support, SupportKind};
+pub use list::{GearList, HeadModel, MOST_OWNED, ModifierModel, Support, SupportKind};
 pub use shortage::{GearUse, gear_use, shortages};

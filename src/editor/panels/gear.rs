@@ -4,7 +4,7 @@ use crate::editor::commands::command::Command;
 use crate::editor::document::gear_shelf::{GearEntry, GearShelf, is_bare, support_text};
 use crate::editor::ui::theme;
 use crate::editor::ui::widgets;
-use crate::gear::{GearUse, gear_use, shortages};
+use crate::gear::{GearUse, MOST_OWNED, gear_use, shortages};
 use crate::photo::{dial_text, flash_time_text};
 use crate::scene::{Head, Scene};
 use eframe::egui::{self, DragValue, Grid, Label, Rect, RichText, ScrollArea, Ui, vec2};
@@ -12,7 +12,6 @@ use eframe::egui::{self, DragValue, Grid, Label, Rect, RichText, ScrollArea, Ui,
 /// Height of the list, which scrolls.
 const LIST_HEIGHT: f32 = 300.0;
 const NAME_WIDTH: f32 = 190.0;
-const MOST_OWNED: u32 = 999;
 
 /// The lists of the window.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
