@@ -27,7 +27,10 @@ pub struct Arguments {
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let own = match &arguments.gear {
         Some(path) => read_list(path)?,
-        None => io::own_gear_path().map(|path| io::read_gear(&path)).transpose()?.unwrap_or_default(),
+        None => io::settings_folder()
+            .map(|folder| io::read_gear(&io::own_gear_path(&folder)))
+            .transpose()?
+            .unwrap_or_default(),
     };
     print(&io::bundled_gear().with(&own));
     Ok(())

@@ -3,7 +3,7 @@
 use super::error::{SaveError, reason};
 use super::parse_errors::explain;
 use super::{atomic, layout, locate, ron_v1};
-use crate::gear::{GearList, ModifierModel};
+use crate::gear::{GearList, MOST_OWNED, ModifierModel};
 use crate::scene::{Emitter, Light, Modifier, NamedModifier, Output, Scene, Severity, validate};
 use std::io::Read;
 use std::path::{Path, PathBuf};
@@ -11,9 +11,8 @@ use std::sync::LazyLock;
 
 /// Largest file, bytes.
 const LIMIT_BYTES: u64 = 1_000_000;
-/// Most entries of a kind, and most pieces of an entry.
+/// Most entries of a kind.
 const MOST_ENTRIES: usize = 1000;
-const MOST_OWNED: u32 = 999;
 /// Longest text of an entry, characters.
 const MOST_CHARACTERS: usize = 400;
 
@@ -49,13 +48,9 @@ pub fn bundled_gear() -> &'static GearList {
     &BUNDLED
 }
 
-/// Name of the user's list of gear in the settings folder.
-pub const OWN_GEAR_FILE: &str = "gear.ron";
-
-/// Returns the path of the user's list of gear: [`OWN_GEAR_FILE`] in the settings folder.
-pub fn own_gear_path() -> Option<PathBuf> {
-    let folders = directories::ProjectDirs::from("", "", "catchlight")?;
-    Some(folders.config_dir().join(OWN_GEAR_FILE))
+/// Returns the path of the user's list of gear in the settings folder.
+pub fn own_gear_path(settings_folder: &Path) -> PathBuf {
+    settings_folder.join("gear.ron")
 }
 
 /// Reads a user's list of gear; an empty one if there is no such file.
@@ -136,7 +131,7 @@ fn check_gear(gear: &GearList) -> Result<(), String> {
             return wrong("its source is empty: name it, or write \"typical\"");
         }
         if owned > MOST_OWNED {
-            return wrong("more than 999 pieces");
+            return wrong(&format!("more than {MOST_OWNED} pieces"));
         }
         if kg.is_some_and(|kg| !(0.0..=1000.0).contains(&kg)) {
             return wrong("a weight or load is 0 to 1000 kg");

@@ -38,11 +38,11 @@ mod picture;
 mod plain_file;
 mod ply;
 mod presets;
+mod program_folders;
 mod read;
 mod recovery;
 mod ron_v1;
 mod scene_file;
-mod state_folder;
 mod stl;
 mod tanks;
 mod texture;
@@ -55,7 +55,7 @@ pub use checkpoint::{RenderId, read_checkpoint, write_checkpoint};
 pub use environment::{ENVIRONMENT_EXTENSIONS, EnvironmentFile, read_environment};
 pub use error::{AssetError, LoadError, Problem, SaveError, reason};
 pub use file_stamp::FileStamp;
-pub use gear_file::{GearError, OWN_GEAR_FILE, bundled_gear, own_gear_path, read_gear, save_gear};
+pub use gear_file::{GearError, bundled_gear, own_gear_path, read_gear, save_gear};
 pub use importers::{
     MODEL_FORMATS, ModelFormat, import_model, import_model_with, importable_files_text, model_extension_list,
     model_extensions, model_format_names,
@@ -74,9 +74,9 @@ pub use picture::{
 };
 pub use plain_file::{check_file, write_file};
 pub use presets::{Preset, PresetGroup, find_preset, presets};
+pub use program_folders::{settings_folder, state_folder};
 pub use recovery::{RecoveryFolder, RecoveryInfo};
 pub use scene_file::{
     FILE_LIMIT_BYTES, FORMAT, Loaded, load_scene, load_scene_with, parse_scene, save_scene, write_scene,
 };
-pub use state_folder::state_folder;
 pub use texture::{TEXTURE_EXTENSIONS, is_texture_file};

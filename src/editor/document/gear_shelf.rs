@@ -31,7 +31,7 @@ pub struct GearShelf {
 impl GearShelf {
     /// Reads the user's list from the settings folder.
     pub fn load(settings_folder: Option<&Path>) -> Self {
-        let path = settings_folder.map(|folder| folder.join(io::OWN_GEAR_FILE));
+        let path = settings_folder.map(io::own_gear_path);
         let all = io::bundled_gear().clone();
         let mut shelf = GearShelf { path, own: GearList::default(), all, failure: None };
         shelf.read();
@@ -189,7 +189,7 @@ mod tests {
         let again = GearShelf::load(Some(folder.path()));
         assert_eq!(again.list(), shelf.list());
         assert_eq!(again.list().head("Monolight 400 Ws").unwrap().owned, 2);
-        let file = folder.path().join(io::OWN_GEAR_FILE);
+        let file = io::own_gear_path(folder.path());
         let text = std::fs::read_to_string(&file).unwrap();
         assert!(text.contains("Octa 120") && !text.contains("Octa 90"), "only what is not as bundled: {text}");
         shelf.set_owned(&head, 0).unwrap();

@@ -2,8 +2,8 @@
 
 use crate::editor::document::files::StudioSource;
 use crate::editor::window::app::{App, EditorOptions};
+use crate::editor::window::event_guard;
 use crate::editor::window::run_time_libraries::{self, MissingLibraries};
-use crate::editor::window::{event_guard, recent};
 use crate::io;
 use crate::preview::Gpu;
 use eframe::UserEvent;
@@ -43,7 +43,7 @@ pub fn run(initial: Option<PathBuf>) -> Result<(), EditorError> {
     check_display()?;
     let options = EditorOptions {
         initial: initial.map(StudioSource::named),
-        settings_folder: recent::settings_folder(),
+        settings_folder: io::settings_folder(),
         recovery_folder: io::state_folder().map(|folder| folder.join("recovery")),
         offers_tour: true,
         started,

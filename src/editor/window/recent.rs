@@ -60,11 +60,6 @@ impl RecentFiles {
     }
 }
 
-/// Returns the user's settings folder of this program.
-pub fn settings_folder() -> Option<PathBuf> {
-    directories::ProjectDirs::from("", "", "catchlight").map(|dirs| dirs.config_dir().to_owned())
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
