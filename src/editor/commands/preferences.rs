@@ -7,7 +7,7 @@ use eframe::egui::ThemePreference;
 
 /// Smallest and largest scale of the window that preferences hold.
 pub const SCALES: (f32, f32) = (0.75, 2.0);
-/// Smallest and largest meter constant of preferences, lux seconds.
+/// Smallest and largest meter constant of the fields for it, lux seconds.
 pub const METER_CONSTANTS: (f32, f32) = (50.0, 1000.0);
 
 /// The preferences.

@@ -3,6 +3,7 @@
 use super::light::kelvin_row;
 use super::{InspectorContext, aim, title};
 use crate::editor::commands::command::Command;
+use crate::editor::commands::preferences::METER_CONSTANTS;
 use crate::editor::document::action::Action;
 use crate::editor::document::placement::aim_offset;
 use crate::editor::ui::lengths;
@@ -31,7 +32,7 @@ pub(super) fn camera_ui(ui: &mut Ui, context: &mut InspectorContext<'_>) {
     });
     section(ui, "Focus", true, |ui| focus_rows(ui, scene, assets, &mut camera));
     section(ui, "Meter", false, |ui| {
-        let field = NumberField::new(1.0, 50.0, 1000.0, 0, " lx s");
+        let field = NumberField::new(1.0, METER_CONSTANTS.0, METER_CONSTANTS.1, 0, " lx s");
         let tip = "Calibration constant C of the incident meter: 250 for a flat receptor, 340 for many domes";
         row(ui, "Constant C", tip, |ui| field.ui(ui, &mut camera.meter_constant));
     });
