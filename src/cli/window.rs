@@ -11,7 +11,6 @@ use crate::photo::{FALSE_STOPS, exposure, false_color};
 use crate::preview::{Channel, Gloss, Gpu, Options, PreviewError, PreviewInput, PreviewRenderer};
 use crate::scene::Scene;
 use anyhow::anyhow;
-use std::f32::consts::PI;
 use std::path::{Path, PathBuf};
 
 /// Opens the editor on a studio file, a shipped studio by name, or the first shipped one.
@@ -56,7 +55,7 @@ fn options(loaded: &Loaded, look: &PreviewLook) -> Result<Options, Failure> {
 
 /// Prints the legend of the false colours on stderr.
 fn legend(scene: &Scene) {
-    let lux_s = exposure::pixel_per_cd_s_m2(scene).recip() * PI;
+    let lux_s = exposure::lux_s_to_set(scene, scene.camera.f_number);
     for stops in FALSE_STOPS.0..=FALSE_STOPS.1 {
         let [r, g, b] = false_color(stops as f32);
         let lux_s = lux_s * (stops as f32).exp2();

@@ -1,7 +1,8 @@
 //! The lamps and the camera of a model in a studio: moved and scaled with the model.
 
 use super::model::ModelSetUp;
-use crate::scene::{Aim, Camera, Light, Mesh, Output, Transform};
+use crate::photo::exposure;
+use crate::scene::{Aim, Camera, FocusedLens, Light, Mesh, Output, Transform};
 use glam::Vec3;
 
 /// Illuminance that an average picture is exposed for, lx s: where the lamps' light is metered.
@@ -46,12 +47,11 @@ impl ModelSetUp {
     }
 }
 
-/// Sets the shutter of a camera for the light of lamps at a point that faces them, to its f-number and ISO. Light that is
-/// too weak or too strong for a picture leaves it as it is.
-pub fn expose_for_lamps(camera: &mut Camera, lamps: &[Light], point: Vec3) {
+/// Sets the shutter of a camera with a lens for the light of lamps at a point that faces them, to its f-number, ISO and
+/// filter. Light that is too weak or too strong for a picture leaves it as it is.
+pub fn expose_for_lamps(camera: &mut Camera, lens: &FocusedLens, lamps: &[Light], point: Vec3) {
     let lux: f32 = lamps.iter().map(|lamp| lux_at(lamp, point)).sum();
-    // N^2 / t = E S / C (an incident meter)
-    let seconds = camera.meter_constant * camera.f_number.powi(2) / (lux * camera.iso);
+    let seconds = exposure::lux_s_of(camera, lens, camera.f_number) / lux;
     if (METERED_LUX_S[0]..=METERED_LUX_S[1]).contains(&lux) {
         camera.shutter_s = seconds.clamp(1.0 / 8000.0, 30.0);
     }
@@ -63,5 +63,25 @@ fn lux_at(light: &Light, point: Vec3) -> f32 {
         (Output::Lux(lux), _) => lux,
         (Output::Candela(intensity), _) => intensity / light.position.distance_squared(point).max(1e-4),
         _ => 0.0,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::{Emitter, Scene};
+
+    #[test]
+    fn a_filter_before_the_lens_was_left_out_of_the_exposure_for_lamps() {
+        let lamps = [Light::new(Emitter::Point, Output::Lux(2000.0))];
+        let shutter_s = |nd_stops: f32| {
+            let scene = Scene { camera: Camera { nd_stops, ..Camera::default() }, ..Scene::default() };
+            let mut camera = scene.camera.clone();
+            expose_for_lamps(&mut camera, &scene.focused_lens(), &lamps, Vec3::ZERO);
+            let exposed = exposure::f_number_to_set(&scene, 2000.0 * camera.shutter_s);
+            assert!((exposed / camera.f_number - 1.0).abs() < 1e-5, "f/{exposed} behind {nd_stops} stops");
+            camera.shutter_s
+        };
+        assert!((shutter_s(3.0) / shutter_s(0.0) - 8.0).abs() < 1e-4);
     }
 }

@@ -56,7 +56,8 @@ pub fn studio_of(model: ImportedModel, file: &Path, folder: &Path) -> Result<Mod
         add_sweep_and_softbox(&mut scene, low, high);
     } else {
         notes.push(format!("{} of the file, and no softbox", counted(lights.len(), "lamp")));
-        expose_for_lamps(&mut scene.camera, &lights, 0.5 * (low + high));
+        let lens = scene.focused_lens();
+        expose_for_lamps(&mut scene.camera, &lens, &lights, 0.5 * (low + high));
         for (light, id) in lights.into_iter().zip(1..) {
             let name = scene.unique_name(&light.name);
             scene.lights.push(Light { id: LightId(id), name, ..light });

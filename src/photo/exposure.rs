@@ -37,8 +37,12 @@ pub fn f_number_to_set(scene: &Scene, lux_s: f32) -> f32 {
 
 /// Returns the luminous exposure for which [`f_number_to_set`] is an f-number, lux s.
 pub fn lux_s_to_set(scene: &Scene, f_number: f32) -> f32 {
-    let camera = &scene.camera;
-    f_number * f_number * camera.meter_constant / (camera.iso * lens_transmission(camera, &scene.focused_lens()))
+    lux_s_of(&scene.camera, &scene.focused_lens(), f_number)
+}
+
+/// Returns the luminous exposure that a camera with a lens needs at an f-number, lux s: C N^2 / (S T).
+pub fn lux_s_of(camera: &Camera, lens: &FocusedLens, f_number: f32) -> f32 {
+    f_number * f_number * camera.meter_constant / (camera.iso * lens_transmission(camera, lens))
 }
 
 /// Returns the f-number for a luminous exposure of continuous light (E t) plus flash (H), lux s: N^2 = (E t + H) S / C.

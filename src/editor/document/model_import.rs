@@ -3,7 +3,7 @@
 use crate::editor::document::action::Action;
 use crate::editor::document::files::ImportedModel;
 use crate::io::{self, LoadProgress};
-use crate::scene::{Camera, Focus, Light, Object, Scene};
+use crate::scene::{Camera, Focus, FocusedLens, Light, Object, Scene};
 use glam::Vec3;
 use std::sync::Arc;
 
@@ -84,7 +84,8 @@ fn placed_camera(scene: &Scene, file: Camera, lamps: &[Light], middle: Vec3) -> 
         ..scene.camera.clone()
     };
     if !scene.lights.iter().any(|light| light.on) {
-        io::expose_for_lamps(&mut camera, lamps, middle);
+        let lens = FocusedLens::new(scene, &camera);
+        io::expose_for_lamps(&mut camera, &lens, lamps, middle);
     }
     camera
 }

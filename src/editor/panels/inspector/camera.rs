@@ -51,10 +51,8 @@ fn exposure_rows(ui: &mut Ui, scene: &Scene, camera: &mut Camera) {
     let tip = "Neutral density filter before the lens: it takes so many stops of all light, flash and continuous";
     row(ui, "ND filter", tip, |ui| nd_filter_ui(ui, &mut camera.nd_stops));
     kelvin_row(ui, "White balance", &mut camera.white_balance_k);
-    let c = camera.meter_constant;
-    let transmission = exposure::lens_transmission(camera, &FocusedLens::new(scene, camera));
-    let lux_s = c * camera.f_number * camera.f_number / (camera.iso * transmission);
-    let ev = exposure::ev100(lux_s / camera.shutter_s, c);
+    let lux_s = exposure::lux_s_of(camera, &FocusedLens::new(scene, camera), camera.f_number);
+    let ev = exposure::ev100(lux_s / camera.shutter_s, camera.meter_constant);
     let tip = "What a grey card needs at these settings: exposure value at ISO 100, lux of continuous light, lux seconds of flash";
     let lux = three_digits(lux_s / camera.shutter_s);
     fact(ui, "Needs", tip, format!("EV {ev:.1}  ({lux} lx, or {} lx s)", three_digits(lux_s)));

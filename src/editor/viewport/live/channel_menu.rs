@@ -8,7 +8,6 @@ use crate::photo::{FALSE_STOPS, exposure, false_color};
 use crate::preview::{Channel, Gloss};
 use crate::scene::Scene;
 use eframe::egui::{Checkbox, Painter, RadioButton, Rect, Ui, UiBuilder, vec2};
-use std::f32::consts::PI;
 
 /// Width of the view below which the axes would cover false colour and scopes, points.
 const NARROW: f32 = 440.0;
@@ -108,7 +107,7 @@ fn tip(channel: Channel) -> &'static str {
 /// Returns the lines of the legend: stops against the camera's exposure, in lux seconds and in lux at the camera's
 /// shutter.
 fn legend_lines(scene: &Scene) -> Vec<([u8; 3], String)> {
-    let lux_s = PI / exposure::pixel_per_cd_s_m2(scene);
+    let lux_s = exposure::lux_s_to_set(scene, scene.camera.f_number);
     let line = |stops: i32| {
         let lux_s = lux_s * (stops as f32).exp2();
         let [lux_s, lux] = [lux_s, lux_s / scene.camera.shutter_s].map(three_digits);
