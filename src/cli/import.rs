@@ -37,7 +37,8 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         return Err(Failure::Input(anyhow!("can't make a studio of the model: {}: {}", error.place, error.message)));
     }
     let files = AssetFiles { folder: None, imported: &studio.imported };
-    for copy in files.copies_into(folder, &studio.scene, &Assets::default()) {
+    let (copies, _) = files.copies_into(folder, &studio.scene, &Assets::default());
+    for copy in copies {
         copy.make().context("can't copy the model beside the studio")?;
     }
     io::save_scene(&studio.scene, output)?;

@@ -119,9 +119,11 @@ fn write_studio(loaded: &Loaded, source: &Path, plan: &DialPlan, path: &Path) ->
     let mut scene = loaded.scene.clone();
     plan.apply(&mut scene);
     let files = AssetFiles::in_folder(source.parent().filter(|_| source.exists()));
-    for copy in files.copies_into(path.parent().unwrap_or(Path::new("")), &scene, &loaded.assets) {
+    let (copies, gone) = files.copies_into(path.parent().unwrap_or(Path::new("")), &scene, &loaded.assets);
+    for copy in copies {
         copy.make()?;
     }
+    gone.iter().for_each(|file| terminal::warning(format!("{file} is gone: the new studio will miss it")));
     io::save_scene(&scene, path)?;
     Ok(())
 }

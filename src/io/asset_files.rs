@@ -59,8 +59,10 @@ impl<'a> AssetFiles<'a> {
     }
 
     /// Returns the copies that make every file of the scene lie where a scene file in `folder` looks for it. A file that
-    /// was deleted after it was loaded is written from `assets`. Files that exist in neither are left out.
-    pub fn copies_into(&self, folder: &Path, scene: &Scene, assets: &Assets) -> Vec<AssetCopy> {
+    /// was deleted after it was loaded is written from `assets`; those of a format that is not written are returned second,
+    /// by the scene's paths. Files that exist in neither are left out.
+    pub fn copies_into(&self, folder: &Path, scene: &Scene, assets: &Assets) -> (Vec<AssetCopy>, Vec<String>) {
+        let mut gone = Vec::new();
         let by_path: BTreeMap<String, AssetRef<'_>> =
             scene.assets().filter_map(|(_, asset)| Some((asset.path()?.to_owned(), asset))).collect();
         let copy = |(path, asset): (String, AssetRef<'_>)| {
@@ -68,12 +70,16 @@ impl<'a> AssetFiles<'a> {
             let to = folder.join(&path);
             match file.filter(|file| file.exists()) {
                 Some(file) => (file != to).then_some(AssetCopy { from: AssetSource::File(file), to }),
-                None => Some(AssetCopy { from: in_memory(&asset, assets)?, to }),
+                None => {
+                    let content = in_memory(&asset, assets);
+                    gone.extend((content.is_none() && assets.contains(&asset)).then_some(path));
+                    Some(AssetCopy { from: content?, to })
+                }
             }
         };
         let copies: Vec<AssetCopy> = by_path.into_iter().filter_map(copy).collect();
         let companions: Vec<AssetCopy> = copies.iter().flat_map(companions).collect();
-        copies.into_iter().chain(companions).collect()
+        (copies.into_iter().chain(companions).collect(), gone)
     }
 }
 
@@ -146,7 +152,7 @@ fn in_memory(asset: &AssetRef<'_>, assets: &Assets) -> Option<AssetSource> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::{Material, MaterialTextures, Room};
+    use crate::scene::{Material, MaterialTextures, Object, Room, Shape};
 
     #[test]
     fn paths_stay_in_the_folder() {
@@ -185,7 +191,7 @@ mod tests {
         };
         let room = Room { floor: textured(0), walls: textured(1), ..Room::default() };
         let scene = Scene { room: Some(room), ..Scene::default() };
-        let copies = files.copies_into(home.path(), &scene, &Assets::default());
+        let (copies, _) = files.copies_into(home.path(), &scene, &Assets::default());
         let to = home.path().join("models/chair.glb");
         assert_eq!(copies, [AssetCopy { from: AssetSource::File(file), to: to.clone() }]);
         copies[0].make().unwrap();
@@ -193,6 +199,18 @@ mod tests {
         std::fs::write(&to, "another chair").unwrap();
         assert!(matches!(copies[0].make(), Err(AssetError::NameTaken { .. })));
         assert_eq!(std::fs::read_to_string(&to).unwrap(), "another chair");
+    }
+
+    #[test]
+    fn a_loaded_model_whose_file_is_gone_and_that_no_file_can_be_made_of_is_named() {
+        let home = tempfile::tempdir().unwrap();
+        let imported = BTreeMap::from([("models/chair.stl".to_owned(), home.path().join("gone.stl"))]);
+        let mut scene = Scene::default();
+        scene.objects.push(Object::new("Chair", Shape::MeshFile { path: "models/chair.stl".to_owned() }));
+        let mut assets = Assets::default();
+        assets.insert_mesh("models/chair.stl".to_owned(), Arc::default());
+        let files = AssetFiles { folder: None, imported: &imported };
+        assert_eq!(files.copies_into(home.path(), &scene, &assets), (vec![], vec!["models/chair.stl".to_owned()]));
     }
 
     #[test]
@@ -207,9 +225,9 @@ mod tests {
         let scene = Scene { room: Some(Room { floor, ..Room::default() }), ..Scene::default() };
         let mut assets = Assets::default();
         let files = AssetFiles { folder: None, imported: &imported };
-        assert_eq!(files.copies_into(home.path(), &scene, &assets), [], "it was never loaded");
+        assert_eq!(files.copies_into(home.path(), &scene, &assets), (vec![], vec![]), "it was never loaded");
         assets.insert_texture(TextureRef::file("textures/wood.png"), texture.clone());
-        let copies = files.copies_into(home.path(), &scene, &assets);
+        let (copies, _) = files.copies_into(home.path(), &scene, &assets);
         copies.iter().for_each(|copy| copy.make().unwrap());
         let written = texture::load(&home.path().join("textures/wood.png")).unwrap();
         assert_eq!(written.texture.rgb, texture.rgb);

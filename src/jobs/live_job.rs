@@ -72,6 +72,11 @@ impl LiveJob {
         self.worker.request(request, wake);
     }
 
+    /// Abandons the request, and the picture that has not been taken.
+    pub fn forget(&self) {
+        self.worker.reset();
+    }
+
     /// Pauses or resumes tracing. The picture is kept.
     pub fn pause(&self, paused: bool) {
         self.worker.pause(paused);

@@ -6,9 +6,10 @@ use super::render::{RenderInput, RenderStage, Rendered, render};
 use super::sentence::sentence;
 use super::threads::{Priority, background_pool};
 use super::worker::{Inbox, Interrupt, Wake, Worker, WorkerSettings};
-use crate::io;
+use crate::io::{self, AssetFiles, LoadProgress};
 use crate::raytrace::{Film, GeometryCache, RenderControl, Settings};
 use crate::scene::{Assets, Scene};
+use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -53,6 +54,8 @@ pub struct RenderRequest {
     pub assets: Assets,
     /// Folder of the studio's file, where missing assets are looked up.
     pub folder: Option<PathBuf>,
+    /// Files that lie elsewhere until the studio is saved, by the studio's paths for them.
+    pub imported: BTreeMap<String, PathBuf>,
     /// BVHs of meshes, shared with the live view.
     pub cache: Arc<GeometryCache>,
     /// Size, method and number of samples.
@@ -73,6 +76,8 @@ struct Report {
     film: Option<Arc<Film>>,
     outcome: Option<RenderOutcome>,
     memory: Option<RenderMemory>,
+    /// What is said about assets that could not be read.
+    missing: Arc<[String]>,
 }
 
 /// One render. Dropping it cancels it.
@@ -81,7 +86,7 @@ pub struct RenderJob {
     worker: Worker<Task, Report>,
     monitor: Arc<RenderMonitor>,
     latest: Report,
-    has_told_sharing: bool,
+    has_warned: bool,
     /// The studio as it is being rendered.
     pub scene: Arc<Scene>,
     /// Size, method and number of samples.
@@ -111,8 +116,9 @@ impl RenderJob {
         });
         let task = Task { request, monitor: monitor.clone() };
         worker.request_with(control, wake, |_| task);
-        let latest = Report { phase: RenderPhase::Preparing, film: None, outcome: None, memory: None };
-        RenderJob { worker, monitor, latest, has_told_sharing: false, scene, settings }
+        let latest =
+            Report { phase: RenderPhase::Preparing, film: None, outcome: None, memory: None, missing: Arc::default() };
+        RenderJob { worker, monitor, latest, has_warned: false, scene, settings }
     }
 
     /// Returns a job that has ended with a film, complete or not.
@@ -121,9 +127,9 @@ impl RenderJob {
         monitor.control().count(0, (film.mean_spp() * settings.pixels() as f64).round() as u64);
         monitor.finish();
         let phase = if is_complete { RenderPhase::Done } else { RenderPhase::Cancelled };
-        let latest = Report { phase, film: Some(film), outcome: None, memory: None };
+        let latest = Report { phase, film: Some(film), outcome: None, memory: None, missing: Arc::default() };
         let worker = Worker::new(WORKER, |_: &Inbox<Task, Report>| {});
-        RenderJob { worker, monitor, latest, has_told_sharing: true, scene, settings }
+        RenderJob { worker, monitor, latest, has_warned: true, scene, settings }
     }
 
     /// Cancels the render. Complete samples are kept.
@@ -135,7 +141,10 @@ impl RenderJob {
     pub fn update(&mut self) {
         match self.worker.take() {
             Some(Ok(report)) => self.latest = report,
-            Some(Err(message)) => self.latest.phase = RenderPhase::Failed(message),
+            Some(Err(message)) => {
+                self.monitor.finish();
+                self.latest.phase = RenderPhase::Failed(message);
+            }
             None => {}
         }
     }
@@ -160,11 +169,12 @@ impl RenderJob {
         self.latest.outcome.take()
     }
 
-    /// Returns why lights share layers, if they do; once.
-    pub fn take_sharing(&mut self) -> Option<String> {
-        let sharing = self.latest.memory.filter(|_| !self.has_told_sharing)?.sharing();
-        self.has_told_sharing = true;
-        sharing
+    /// Returns what the user should know about the picture, once: assets that could not be read, and why lights share
+    /// layers, if they do.
+    pub fn take_warnings(&mut self) -> Vec<String> {
+        let Some(memory) = self.latest.memory.filter(|_| !self.has_warned) else { return Vec::new() };
+        self.has_warned = true;
+        self.latest.missing.iter().cloned().chain(memory.sharing()).collect()
     }
 
     /// Returns the current progress.
@@ -175,19 +185,21 @@ impl RenderJob {
 
 /// The body of the render thread.
 fn run(task: &Task, inbox: &Inbox<Task, Report>) {
-    let Task { request: RenderRequest { scene, assets, folder, cache, settings }, monitor } = task;
+    let Task { request: RenderRequest { scene, assets, folder, imported, cache, settings }, monitor } = task;
     let control = monitor.control();
     let started = Instant::now();
     // Load the assets that are missing.
     let mut assets = assets.clone();
-    io::load_assets(scene, folder.as_deref(), &mut assets);
+    let files = AssetFiles { folder: folder.as_deref(), imported };
+    let missing = io::load_assets_from(scene, files, &LoadProgress::default(), &mut assets);
+    let missing = missing.iter().map(ToString::to_string).collect();
     let load_s = started.elapsed().as_secs_f64();
     // Render, and publish the film from time to time.
     let pool = match background_pool(0, "trace") {
         Ok(pool) => pool,
         Err(error) => return inbox.fail(format!("No threads to render with: {error}.")),
     };
-    let mut report = Report { phase: RenderPhase::Preparing, film: None, outcome: None, memory: None };
+    let mut report = Report { phase: RenderPhase::Preparing, film: None, outcome: None, memory: None, missing };
     let mut last_film: Option<Instant> = None;
     let input = RenderInput { snapshots: true, ..RenderInput::new(scene, &assets, cache, settings) };
     let rendered = render(&input, &pool, monitor, &mut |stage| {

@@ -82,8 +82,35 @@ impl FilePurpose {
         }
     }
 
-    /// Returns the path with the default extension added to a file to write that has none.
-    pub fn with_extension_added(self, path: PathBuf) -> PathBuf {
-        if self.is_save() && path.extension().is_none() { path.with_extension(self.filter().1[0]) } else { path }
+    /// Returns the path with the default extension added to a file to write that has none of its kind: "Portrait 1.2" has
+    /// none.
+    pub fn with_extension_added(self, mut path: PathBuf) -> PathBuf {
+        const LONGEST: usize = 4;
+        let is_extension = |own: &str| match self {
+            FilePurpose::SaveScene => own.eq_ignore_ascii_case("ron"),
+            // One of another kind is refused when it is written
+            _ => own.len() <= LONGEST && own.chars().all(|c| c.is_ascii_alphabetic()),
+        };
+        if self.is_save() && !path.extension().is_some_and(|own| is_extension(&own.to_string_lossy())) {
+            path.as_mut_os_string().push(format!(".{}", self.filter().1[0]));
+        }
+        path
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_with_dots_keep_them_and_get_an_extension() {
+        let named = |purpose: FilePurpose, name: &str| purpose.with_extension_added(PathBuf::from(name));
+        for (name, saved) in [("Portrait 1.2", "Portrait 1.2.ron"), ("a.RON", "a.RON"), ("by J.Doe", "by J.Doe.ron")] {
+            assert_eq!(named(FilePurpose::SaveScene, name), PathBuf::from(saved));
+        }
+        for (name, written) in [("Portrait 1.2", "Portrait 1.2.png"), ("a.jpeg", "a.jpeg"), ("a.bmp", "a.bmp")] {
+            assert_eq!(named(FilePurpose::ExportPicture, name), PathBuf::from(written));
+        }
+        assert_eq!(named(FilePurpose::OpenScene, "a"), PathBuf::from("a"));
     }
 }

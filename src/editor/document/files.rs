@@ -196,13 +196,15 @@ pub fn load_assets(
     (assets, warnings.iter().map(ToString::to_string).collect())
 }
 
-/// Writes the studio and copies its assets beside it.
-pub fn save(document: &Document, path: &Path) -> Result<(), String> {
+/// Writes the studio and copies its assets beside it. Returns the asset files that are gone, by the studio's paths.
+pub fn save(document: &Document, path: &Path) -> Result<Vec<String>, String> {
     let folder = path.parent().unwrap_or(Path::new(""));
-    for copy in document.asset_files().copies_into(folder, document.scene(), document.assets()) {
+    let (copies, gone) = document.asset_files().copies_into(folder, document.scene(), document.assets());
+    for copy in copies {
         copy.make().map_err(|e| sentence(&e))?;
     }
-    io::save_scene(document.scene(), path).map_err(|e| sentence(&e))
+    io::save_scene(document.scene(), path).map_err(|e| sentence(&e))?;
+    Ok(gone)
 }
 
 /// A rendered picture that is to be written.

@@ -12,8 +12,8 @@ use std::sync::Arc;
 pub struct RunningLoad {
     /// Name of the file or the studio.
     pub name: String,
-    /// Label of the button that ends it.
-    pub cancel: &'static str,
+    /// Whether it is a studio.
+    pub is_studio: bool,
     /// Time of the window from which on it is shown, seconds: most studios are read by then.
     pub shown_from_s: f64,
     /// How far it is.

@@ -295,9 +295,11 @@ impl Document {
         AssetFiles { folder: self.folder(), imported: &self.imported }
     }
 
-    /// Marks the current scene as saved to `path`.
+    /// Marks the current scene as saved to `path`. Imported files of what was deleted stay known: undo brings it back.
     pub fn mark_saved(&mut self, path: PathBuf) {
-        self.imported.clear();
+        let path_of = |asset: &AssetRef<'_>| asset.path().map(str::to_owned);
+        let copied: BTreeSet<String> = self.scene.assets().filter_map(|(_, asset)| path_of(&asset)).collect();
+        self.imported.retain(|asset_path, _| !copied.contains(asset_path));
         (self.saved, self.is_unsaved, self.is_changed) = (self.scene.clone(), false, false);
         self.stamp = FileStamp::of(&path).ok();
         self.path = Some(path);

@@ -64,6 +64,11 @@ impl TankPlayer {
         });
     }
 
+    /// Holds the water.
+    pub fn hold(&mut self) {
+        self.run = None;
+    }
+
     /// Returns the number that merges the changes of this run into one undo step. No press of the mouse has it.
     pub fn merge_id(&self) -> u64 {
         u64::MAX - self.runs

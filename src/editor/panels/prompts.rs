@@ -61,6 +61,32 @@ pub fn panorama_ui(ctx: &egui::Context, path: &Path) -> Option<PanoramaAnswer> {
     })
 }
 
+/// The answer to the prompt about a file that is there already.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ReplaceAnswer {
+    /// Replace it.
+    Replace,
+    /// Keep it.
+    Cancel,
+}
+
+/// Draws the prompt about a file that would be replaced.
+pub fn replace_ui(ctx: &egui::Context, path: &Path) -> Option<ReplaceAnswer> {
+    let question = Question {
+        name: "replace file",
+        width: 460.0,
+        heading: "Replace the file?",
+        answers: &[
+            ("Replace", ReplaceAnswer::Replace, "What the file holds now is lost"),
+            ("Cancel", ReplaceAnswer::Cancel, "Keep the file (Esc)"),
+        ],
+        on_enter: None,
+    };
+    widgets::question_dialog(ctx, &question, |ui| {
+        ui.label(format!("{} is there already.", path.display()));
+    })
+}
+
 /// A prompt for a path.
 #[derive(Clone, Debug)]
 pub struct PathPrompt {

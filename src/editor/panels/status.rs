@@ -48,7 +48,8 @@ pub fn status_ui(
 /// Draws how far a file is read, and the button that ends it.
 fn load_ui(ui: &mut Ui, load: &RunningLoad, out: &mut Vec<Command>) {
     ui.label(format!("{}: {:.0} %", load.name, 100.0 * load.progress.fraction()));
-    if ui.small_button(load.cancel).on_hover_text("The studio stays as it is").clicked() {
+    let cancel = if load.is_studio { "Cancel opening" } else { "Cancel import" };
+    if ui.small_button(cancel).on_hover_text("The studio stays as it is").clicked() {
         out.push(Command::CancelLoads);
     }
     ui.ctx().request_repaint_after(PROGRESS_TIME);

@@ -6,7 +6,7 @@ use crate::editor::ui::image_texture::ImageTexture;
 use crate::editor::ui::scopes::{ChartData, waveform_image};
 use crate::editor::ui::spot_readout::{SpotLux, SpotReading};
 use crate::editor::ui::wake::wake;
-use crate::io::KeptPicture;
+use crate::io::{AssetFiles, KeptPicture};
 use crate::jobs::{Developed, Development, FilmDeveloper, RenderJob, RenderOutcome, RenderPhase, RenderRequest};
 use crate::photo::{Histogram, Picture, PictureDisplay, Spot, Waveform, exposure};
 use crate::raytrace::{self, Film, GeometryCache, Settings};
@@ -14,7 +14,7 @@ use crate::scene::{Assets, Light, LightId, Scene, SceneChange};
 use eframe::egui::{Color32, ColorImage, Context, TextureId};
 use std::collections::HashMap;
 use std::f32::consts::PI;
-use std::path::PathBuf;
+use std::path::Path;
 use std::sync::{Arc, Weak};
 use std::time::Duration;
 
@@ -101,12 +101,13 @@ impl Rendering {
         }
     }
 
-    /// Starts a render.
-    pub fn start(&mut self, scene: &Scene, assets: &Assets, folder: Option<PathBuf>, ctx: &Context) {
+    /// Starts a render of the studio; assets that are not loaded yet are read from `files`.
+    pub fn start(&mut self, scene: &Scene, assets: &Assets, files: AssetFiles<'_>, ctx: &Context) {
         let settings = self.settings.render_settings(&scene.camera);
-        self.former = self.to_keep();
+        let (folder, imported) = (files.folder.map(Path::to_owned), files.imported.clone());
+        self.former = self.kept_picture().or(self.former.take());
         let (scene, assets, cache) = (Arc::new(scene.clone()), assets.clone(), self.trees.clone());
-        let request = RenderRequest { scene, assets, folder, cache, settings };
+        let request = RenderRequest { scene, assets, folder, imported, cache, settings };
         (self.job, self.develop_failure) = (Some(RenderJob::start(request, &wake(ctx))), None);
     }
 
@@ -281,8 +282,11 @@ impl Rendering {
         if let Some(job) = &mut self.job {
             job.update();
             self.film = job.film().cloned().or(self.film.take());
-            if job.film().is_some_and(|film| is_of(film, &job.settings) || !job.phase().is_running()) {
+            let has_picture = job.film().is_some_and(|film| is_of(film, &job.settings));
+            if has_picture {
                 self.former = None;
+            } else if !job.phase().is_running() {
+                self.show_former();
             }
         }
         if let Some(film) = &self.film {
@@ -317,6 +321,14 @@ impl Rendering {
         }
     }
 
+    /// Shows the picture before a render again that has ended without one of its own.
+    fn show_former(&mut self) {
+        let Some(KeptPicture { film, scene, settings, is_complete }) = self.former.take() else { return };
+        self.develop_failure = self.failure().map(str::to_owned);
+        self.film = Some(film.clone());
+        self.job = Some(RenderJob::ended(scene, settings, film, is_complete));
+    }
+
     /// Returns how long the next film of a running render should still wait, if it should.
     fn pause(&self) -> Option<Duration> {
         let job = self.job.as_ref().filter(|job| job.phase().is_running())?;
@@ -335,9 +347,9 @@ impl Rendering {
         Some((job, outcome))
     }
 
-    /// Returns why the lights of the render share layers, if they do; once.
-    pub fn take_sharing(&mut self) -> Option<String> {
-        self.job.as_mut()?.take_sharing()
+    /// Returns what the user should know about the picture, once.
+    pub fn take_warnings(&mut self) -> Vec<String> {
+        self.job.as_mut().map(RenderJob::take_warnings).unwrap_or_default()
     }
 
     /// Returns the message of a render or a development that failed.

@@ -218,8 +218,8 @@ impl App {
         if let Some(wait) = self.background.warmer.update(subject, scene, assets, is_rendering, &wake(ctx)) {
             ctx.request_repaint_after(wait);
         }
-        if let Some(sharing) = self.rendering.take_sharing() {
-            self.toasts.warning(sentence(&sharing));
+        for warning in self.rendering.take_warnings() {
+            self.toasts.warning(sentence(&warning));
         }
         match self.rendering.failure() {
             Some(message) if !self.window.render_failure_reported => {
@@ -268,7 +268,10 @@ impl App {
             if ctx.input_mut(|i| i.consume_key(egui::Modifiers::NONE, egui::Key::Escape)) {
                 // Immediately, or the drag would continue in this frame.
                 self.views.viewport.cancel_drag();
-                out.push(Command::Escape);
+                // A box has no steps to discard, and has ended: Esc is not for anything else
+                if self.views.viewport.is_dragging() {
+                    out.push(Command::Escape);
+                }
             }
             return;
         }

@@ -120,6 +120,13 @@ impl PanelState {
             right: SidePanel::default(),
         }
     }
+
+    /// Ends what the panels show of the former studio, because another one is open.
+    pub fn begin_studio(&mut self) {
+        (self.outliner, self.variants) = (OutlinerState::default(), VariantsState::default());
+        self.tank_player.hold();
+        self.dial_wishes.clear();
+    }
 }
 
 /// Background work other than renders and the live view.

@@ -43,7 +43,8 @@ fn write(document: &Document, path: &Path) -> Result<(), String> {
     if document.folder() != Some(folder) {
         std::fs::create_dir(folder).map_err(|error| format!("{} could not be made: {error}", folder.display()))?;
     }
-    for copy in document.asset_files().copies_into(folder, document.scene(), document.assets()) {
+    let (copies, _) = document.asset_files().copies_into(folder, document.scene(), document.assets());
+    for copy in copies {
         // A missing model can be imported again; the lighting cannot be recovered.
         if let Err(error) = copy.make() {
             log::warn!("{error}");

@@ -381,8 +381,8 @@ impl App {
                 .info(format!("The picture of {name} is being rendered: wait for it, or show {name} and cancel it."));
             return;
         }
-        let folder = self.document.folder().map(std::path::Path::to_owned);
-        self.rendering.start(self.document.scene(), &self.document.finished_assets(), folder, ctx);
+        let document = &self.document;
+        self.rendering.start(document.scene(), &document.finished_assets(), document.asset_files(), ctx);
         self.views.central = CentralView::Picture;
         self.panels.tour.show_picture();
     }

@@ -9,7 +9,7 @@ use crate::io::PictureInfo;
 use crate::jobs::{background_pool, sentence};
 use crate::photo::Picture;
 use crate::raytrace::{GeometryCache, RenderControl};
-use crate::scene::{Assets, LightId, Scene};
+use crate::scene::{Assets, Camera, LightId, Scene};
 use crate::sheet::{
     Lesson, LessonFormat, LessonSeries, LessonSheet, SheetContent, SheetFormat, Units, draft_picture, write_lesson,
     write_sheet,
@@ -24,14 +24,18 @@ const SAMPLES: u32 = 8;
 impl App {
     /// Writes the rendered picture in the background.
     pub(super) fn export_picture_to(&mut self, path: PathBuf, ctx: &Context) {
-        let (Some(developed), Some(job)) = (self.rendering.developed(), self.rendering.job()) else { return };
+        let (Some(developed), Some(job)) = (self.rendering.developed(), self.rendering.job()) else {
+            self.toasts.info("There is no picture to export any more: another one is being rendered.");
+            return;
+        };
         let scene = self.rendering.mix.mixed(self.document.scene()).into_owned();
+        let shown = shown_studio(&job.scene, &scene);
         let seed = job.settings.seed.into();
         let export = PictureExport {
             picture: developed.picture.clone(),
             denoised_from: developed.noisy.clone().zip(developed.denoiser),
             film: developed.film.upgrade(),
-            info: PictureInfo::new(&scene, &developed.method, developed.spp, seed),
+            info: PictureInfo::new(&shown, &developed.method, developed.spp, seed),
             scene,
         };
         let film = developed.film.clone();
@@ -79,6 +83,23 @@ impl App {
         };
         self.background.exports.start(work, waker(ctx));
     }
+}
+
+/// Returns the studio that a picture shows: the one that was rendered, with the lights' power, colours and switches and the
+/// exposure of now, by which the picture is developed.
+fn shown_studio(rendered: &Scene, now: &Scene) -> Scene {
+    let mut shown = rendered.clone();
+    for light in &mut shown.lights {
+        let now = now.light(light.id);
+        light.on = now.is_some_and(|now| now.on);
+        if let Some(now) = now {
+            (light.power, light.color, light.muted) = (now.power.clone(), now.color.clone(), now.muted);
+            light.name.clone_from(&now.name);
+        }
+    }
+    let Camera { f_number, shutter_s, iso, white_balance_k, nd_stops, meter_constant, .. } = now.camera;
+    shown.camera = Camera { f_number, shutter_s, iso, white_balance_k, nd_stops, meter_constant, ..shown.camera };
+    shown
 }
 
 fn export_lesson(

@@ -8,16 +8,15 @@ use crate::editor::document::files::{self, OpenedStudio, StudioSource};
 use crate::editor::document::item::Item;
 use crate::editor::document::selection::Selection;
 use crate::editor::document::studio_document::Document;
-use crate::editor::panels::prompts::{self, PathAnswer, PathPrompt, UnsavedAnswer};
+use crate::editor::panels::prompts::{self, PathAnswer, PathPrompt, ReplaceAnswer, UnsavedAnswer};
 use crate::editor::window::app::App;
-use crate::editor::window::background_tasks::TaskResult;
+use crate::editor::window::background_tasks::{StudioLoad, TaskResult};
 use crate::editor::window::dialogs::DialogAnswer;
 use crate::editor::window::session::PendingOperation;
-use crate::io::{self, LoadProgress, ModelFormat};
+use crate::io::{self, ModelFormat};
 use crate::scene::TextureRef;
 use eframe::egui::{self, Align2, Color32, Context, Id, LayerId, Order, ViewportCommand};
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 use std::sync::mpsc::TryRecvError;
 use std::time::Duration;
 
@@ -41,7 +40,10 @@ impl App {
             Command::EnvironmentMap(light) => self.ask_for_path(FilePurpose::OpenEnvironment(light), ctx),
             Command::EnvironmentMapPath(light, path) => self.read_environment(light, path, ctx),
             Command::ChooseTexture(item, part, slot) => {
-                self.session.texture_for = Some((item, part, slot));
+                // Only if the dialog is not open for another texture
+                if self.session.dialog.is_none() {
+                    self.session.texture_for = Some((item, part, slot));
+                }
                 self.ask_for_path(FilePurpose::OpenTexture, ctx);
             }
             Command::ExportPicture if self.rendering.developed().is_none() => {
@@ -57,12 +59,15 @@ impl App {
 
     /// Loads another studio in the background.
     pub(super) fn load(&mut self, source: StudioSource, ctx: &Context) {
+        // The studio that is asked for last is the one to open
+        self.background.loads.iter().filter(|load| load.is_studio).for_each(|load| load.progress.cancel());
         let shown_from_s = ctx.input(|i| i.time) + QUIET_S;
-        let progress = self.begin_load(source.name(), "Cancel opening", shown_from_s);
+        let progress = self.begin_load(source.name(), true, shown_from_s);
         ctx.request_repaint_after(Duration::from_secs_f64(QUIET_S));
+        let load = StudioLoad { source, progress, open: Box::new(self.document.scene().clone()) };
         let work = move || {
-            let result = files::open(&source, &progress);
-            TaskResult::Opened(source, progress, result)
+            let result = files::open(&load.source, &load.progress);
+            TaskResult::Opened(load, result)
         };
         self.background.tasks.start(work, waker(ctx));
     }
@@ -93,6 +98,7 @@ impl App {
     fn ask_for_path(&mut self, purpose: FilePurpose, ctx: &Context) {
         if self.session.dialog.is_some() {
             self.toasts.info("A file dialog is open already.");
+            self.session.after_save = None;
             return;
         }
         let (folder, name) = self.suggestion(purpose);
@@ -121,13 +127,37 @@ impl App {
         };
         self.session.dialog = None;
         match answer {
-            DialogAnswer::Chosen(path) => out.push(Command::UseFile(purpose, path)),
+            DialogAnswer::Chosen(path) => self.use_or_ask(purpose, path, true, out),
             DialogAnswer::Cancelled => self.session.after_save = None,
             DialogAnswer::Unavailable => {
                 let (folder, name) = self.suggestion(purpose);
                 self.session.prompt = Some(PathPrompt::new(purpose, folder.as_deref(), &name));
             }
         }
+    }
+
+    /// Uses a chosen file, or asks first if it would replace one that is not the studio's own. `is_confirmed`: the desktop
+    /// has asked about the file of just this name.
+    fn use_or_ask(&mut self, purpose: FilePurpose, chosen: PathBuf, is_confirmed: bool, out: &mut Vec<Command>) {
+        let path = purpose.with_extension_added(chosen.clone());
+        let is_own = purpose == FilePurpose::SaveScene && self.document.path() == Some(&path);
+        let is_asked = !is_own && !(is_confirmed && path == chosen);
+        if purpose.is_save() && is_asked && path.exists() {
+            self.session.replace = Some((purpose, path));
+        } else {
+            out.push(Command::UseFile(purpose, path));
+        }
+    }
+
+    /// Draws the prompt about a file that would be replaced, and handles its answer.
+    fn ask_to_replace(&mut self, ctx: &Context, out: &mut Vec<Command>) {
+        let Some((purpose, path)) = &self.session.replace else { return };
+        match prompts::replace_ui(ctx, path) {
+            Some(ReplaceAnswer::Replace) => out.push(Command::UseFile(*purpose, path.clone())),
+            Some(ReplaceAnswer::Cancel) => self.session.after_save = None,
+            None => return,
+        }
+        self.session.replace = None;
     }
 
     fn path_chosen(&mut self, purpose: FilePurpose, path: PathBuf, ctx: &Context) {
@@ -149,13 +179,20 @@ impl App {
         if self.ask_before_overwriting(&path) {
             return;
         }
-        if let Err(message) = files::save(&self.document, &path) {
-            self.session.after_save = None;
-            self.toasts.error(format!("The studio was not saved. {message}"));
-            return;
+        match files::save(&self.document, &path) {
+            Ok(gone) if gone.is_empty() => self.toasts.info(format!("Saved to {}", path.display())),
+            Ok(gone) => self.toasts.warning(format!(
+                "Saved to {}, but without {}: the file is gone. Opened again, the studio will miss it.",
+                path.display(),
+                gone.join(", ")
+            )),
+            Err(message) => {
+                self.session.after_save = None;
+                self.toasts.error(format!("The studio was not saved. {message}"));
+                return;
+            }
         }
         self.session.recent.push(&path);
-        self.toasts.info(format!("Saved to {}", path.display()));
         self.document.mark_saved(path);
         self.session.file_change_put_off = false;
         if let Some(pending) = self.session.after_save.take() {
@@ -163,17 +200,15 @@ impl App {
         }
     }
 
-    /// Takes a studio that was read, unless it was cancelled.
-    fn take_opened(
-        &mut self,
-        source: &StudioSource,
-        progress: &Arc<LoadProgress>,
-        result: Result<Box<OpenedStudio>, String>,
-        ctx: &Context,
-    ) {
-        let name = self.end_load(progress);
+    /// Takes a studio that was read, unless it was cancelled. Asks first if the open one has changed meanwhile.
+    fn take_opened(&mut self, load: StudioLoad, result: Result<Box<OpenedStudio>, String>, ctx: &Context) {
+        let StudioLoad { source, progress, open } = load;
+        let name = self.end_load(&progress);
         match result {
             _ if progress.is_cancelled() => self.toasts.info(format!("{name} was not opened: cancelled.")),
+            Ok(_) if self.document.is_dirty() && *self.document.scene() != *open => {
+                self.session.unsaved_prompt = Some(PendingOperation::Load(source));
+            }
             Ok(mut opened) => {
                 if !matches!(source, StudioSource::File(_)) {
                     self.session.preferences.get().calibrate(&mut opened.scene.camera);
@@ -181,7 +216,7 @@ impl App {
                 self.show_opened(*opened, ctx);
             }
             Err(message) => {
-                if let StudioSource::File(path) = source
+                if let StudioSource::File(path) = &source
                     && !path.exists()
                 {
                     self.session.recent.forget(path);
@@ -193,7 +228,7 @@ impl App {
 
     pub(super) fn take_done(&mut self, done: TaskResult, ctx: &Context) {
         match done {
-            TaskResult::Opened(source, progress, result) => self.take_opened(&source, &progress, result, ctx),
+            TaskResult::Opened(load, result) => self.take_opened(load, result, ctx),
             TaskResult::Imported(progress, result) => self.take_import(&progress, result),
             TaskResult::Environment(light, Ok(environment)) => self.use_environment(light, *environment),
             TaskResult::Environment(_, Err(message)) => self.toasts.error(message),
@@ -227,6 +262,14 @@ impl App {
             TaskResult::SheetExported(kind, _, Err(message)) => {
                 self.toasts.error(format!("{kind} sheet not written. {message}"));
             }
+            TaskResult::ImportOfAnotherStudio(progress) => {
+                let name = self.end_load(&progress);
+                self.toasts.info(format!("{name} was not brought in: another studio is open."));
+            }
+            TaskResult::Panicked => {
+                self.drop_panicked_loads();
+                self.toasts.error("A file could not be read or written: an internal error.");
+            }
         }
     }
 
@@ -243,16 +286,18 @@ impl App {
         }
         self.rendering.clear();
         self.views.viewport.traced_view.clear();
+        self.views.viewport.preview.view_options.only_light = None;
+        self.views.viewport.tool = None;
+        self.background.tasks.begin_studio();
+        self.session.begin_studio();
+        self.panels.begin_studio();
         self.document = Document::new(opened.scene, opened.assets, opened.path);
         self.variant_pictures.clear(self.document.scene());
         self.views.picture.comparison = Comparison::default();
         self.document.set_stamp(opened.stamp);
-        self.session.file_change_put_off = false;
         self.selection = Selection::default();
-        self.panels.dial_wishes.clear();
         self.background.transport.reset();
         self.background.room_audit.reset();
-        self.views.viewport.tool = None;
         if matches!(self.views.central, CentralView::Picture | CentralView::Light(_)) {
             self.views.central = CentralView::Studio;
         }
@@ -386,6 +431,7 @@ impl App {
                 UnsavedAnswer::Cancel => {}
             }
         }
+        self.ask_to_replace(ctx, out);
         self.ask_about_model(ctx);
         self.ask_about_picture(ctx, out);
         self.ask_about_file_change(ctx, out);
@@ -395,7 +441,7 @@ impl App {
             match prompt.ui(ctx) {
                 Some(PathAnswer::Chosen(path)) => {
                     self.session.prompt = None;
-                    out.push(Command::UseFile(purpose, path));
+                    self.use_or_ask(purpose, path, false, out);
                 }
                 Some(PathAnswer::Cancelled) => (self.session.prompt, self.session.after_save) = (None, None),
                 None => {}

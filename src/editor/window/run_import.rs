@@ -17,7 +17,7 @@ impl App {
     /// Reads a model in the background.
     pub(super) fn import(&mut self, path: PathBuf, ctx: &Context) {
         let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
-        let progress = self.begin_load(name, "Cancel import", 0.0);
+        let progress = self.begin_load(name, false, 0.0);
         let work = move || {
             let result = files::import(path, &progress);
             TaskResult::Imported(progress, result)
@@ -26,10 +26,15 @@ impl App {
     }
 
     /// Lists a file that is read in the background, and returns its progress.
-    pub(super) fn begin_load(&mut self, name: String, cancel: &'static str, shown_from_s: f64) -> Arc<LoadProgress> {
+    pub(super) fn begin_load(&mut self, name: String, is_studio: bool, shown_from_s: f64) -> Arc<LoadProgress> {
         let progress: Arc<LoadProgress> = Arc::default();
-        self.background.loads.push(RunningLoad { name, cancel, shown_from_s, progress: progress.clone() });
+        self.background.loads.push(RunningLoad { name, is_studio, shown_from_s, progress: progress.clone() });
         progress
+    }
+
+    /// Removes the files from the list whose reading ended by an internal error.
+    pub(super) fn drop_panicked_loads(&mut self) {
+        self.background.loads.retain(|load| Arc::strong_count(&load.progress) > 1);
     }
 
     /// Removes a file that is read from the list, and returns its name.

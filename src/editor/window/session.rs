@@ -50,6 +50,8 @@ pub struct Session {
     pub(super) dialog: Option<(FilePurpose, Receiver<DialogAnswer>)>,
     pub(super) prompt: Option<PathPrompt>,
     pub(super) unsaved_prompt: Option<PendingOperation>,
+    /// The file that the user is asked about before it is replaced, and what it is replaced by.
+    pub(super) replace: Option<(FilePurpose, PathBuf)>,
     /// Imported models that the user is asked about, one after the other.
     pub(super) models: VecDeque<PendingModel>,
     /// The panorama that the user is asked about.
@@ -76,6 +78,7 @@ impl Session {
             dialog: None,
             prompt: None,
             unsaved_prompt: None,
+            replace: None,
             models: VecDeque::new(),
             panorama: None,
             after_save: None,
@@ -87,6 +90,12 @@ impl Session {
         }
     }
 
+    /// Ends what was asked about the former studio, because another one is open.
+    pub fn begin_studio(&mut self) {
+        self.models.clear();
+        (self.texture_for, self.file_change, self.file_change_put_off) = (None, None, false);
+    }
+
     /// Returns true while the desktop's dialog is open.
     pub fn is_waiting(&self) -> bool {
         self.dialog.is_some()
@@ -94,7 +103,8 @@ impl Session {
 
     /// Returns true while a prompt about the open studio is open.
     pub fn has_prompt(&self) -> bool {
-        let is_asking_about_file = !self.models.is_empty() || self.panorama.is_some() || self.file_change.is_some();
+        let is_asking_about_file =
+            !self.models.is_empty() || self.panorama.is_some() || self.file_change.is_some() || self.replace.is_some();
         self.prompt.is_some() || self.unsaved_prompt.is_some() || is_asking_about_file
     }
 

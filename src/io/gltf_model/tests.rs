@@ -266,7 +266,7 @@ fn data_in_a_file_beside_the_model_are_read_and_go_where_the_model_goes() {
     let elsewhere = tempfile::tempdir().unwrap();
     let studio = crate::io::studio_of(model, &path, elsewhere.path()).unwrap();
     let files = crate::io::AssetFiles { folder: None, imported: &studio.imported };
-    for copy in files.copies_into(elsewhere.path(), &studio.scene, &Default::default()) {
+    for copy in files.copies_into(elsewhere.path(), &studio.scene, &Default::default()).0 {
         copy.make().unwrap();
     }
     assert_eq!(std::fs::read(elsewhere.path().join("models/data/two bottles.bin")).unwrap(), bin);

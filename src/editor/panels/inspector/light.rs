@@ -25,11 +25,8 @@ pub(super) fn light_ui(ui: &mut Ui, context: &mut InspectorContext<'_>, id: Ligh
     let Some(original) = scene.light(id) else { return };
     let mut light = original.clone();
     title(ui, &original.name, light.emitter.label());
-    row(ui, "Name", "Names are unique in a studio", |ui| {
-        if let Some(name) = text_ui(ui, "name", &original.name, false) {
-            context.out.push(Command::Apply(Action::Rename(Item::Light(id), name)));
-        }
-    });
+    let mut new_name = None;
+    row(ui, "Name", "Names are unique in a studio", |ui| new_name = text_ui(ui, "name", &original.name, false));
     row(ui, "Switch", "Whether it shines", |ui| {
         widgets::choice(ui, &mut light.on, &[(true, "On", "It shines"), (false, "Off", "It is dark")]);
         let why = match (original.on, original.muted, scene.is_silenced(original)) {
@@ -67,6 +64,8 @@ pub(super) fn light_ui(ui: &mut Ui, context: &mut InspectorContext<'_>, id: Ligh
     if light != *original {
         context.out.push(Command::Apply(Action::SetLight(Box::new(light))));
     }
+    // After the other changes, which have the old name: a click on their controls ends the typing
+    context.out.extend(new_name.map(|name| Command::Apply(Action::Rename(Item::Light(id), name))));
 }
 
 fn role_row(ui: &mut Ui, light: &mut Light) {

@@ -20,11 +20,8 @@ pub(super) fn object_ui(ui: &mut Ui, context: &mut InspectorContext<'_>, id: Obj
     let Some(original) = scene.object(id) else { return };
     let mut object = original.clone();
     title(ui, &original.name, object.shape.label());
-    row(ui, "Name", "Names are unique in a studio", |ui| {
-        if let Some(name) = text_ui(ui, "name", &original.name, false) {
-            context.out.push(Command::Apply(Action::Rename(Item::Object(id), name)));
-        }
-    });
+    let mut new_name = None;
+    row(ui, "Name", "Names are unique in a studio", |ui| new_name = text_ui(ui, "name", &original.name, false));
     row(ui, "Show", "Hidden things are neither seen nor do they cast shadows", |ui| {
         widgets::choice(
             ui,
@@ -69,6 +66,8 @@ pub(super) fn object_ui(ui: &mut Ui, context: &mut InspectorContext<'_>, id: Obj
     if object != *original {
         context.out.push(Command::Apply(Action::SetObject(Box::new(object))));
     }
+    // After the other changes, which have the old name: a click on their controls ends the typing
+    context.out.extend(new_name.map(|name| Command::Apply(Action::Rename(Item::Object(id), name))));
 }
 
 fn shape_rows(ui: &mut Ui, assets: &Assets, object: &mut Object) {

@@ -58,6 +58,7 @@ impl TracedView {
 
     /// Clears the image, because another studio was opened.
     pub fn clear(&mut self) {
+        self.job.forget();
         self.image_texture.clear();
         (self.shown, self.requested, self.failure, self.picture) = (None, None, None, None);
     }
