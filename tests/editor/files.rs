@@ -408,6 +408,59 @@ fn a_dropped_exr_without_a_studio_becomes_the_environment_if_it_is_a_panorama() 
 }
 
 #[test]
+fn what_is_changed_while_a_studio_is_read_is_asked_about() {
+    if !has_adapter() {
+        return;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let studio = folder.path().join("other.ron");
+    std::fs::write(&studio, catchlight::io::find_preset("split").unwrap().text).unwrap();
+    let mut window = window_with_answers([]);
+    let mut light = scene(&window).lights[0].clone();
+    light.power.dial_stops -= 1.0;
+    // Before a frame takes the result
+    for command in [Command::OpenPath(studio), Command::Apply(Action::SetLight(Box::new(light)))] {
+        window.state_mut().run(command, None, &egui::Context::default());
+    }
+    settle(&mut window);
+    let changed = scene(&window).clone();
+    assert!(window.query_by_label("Unsaved changes").is_some() && window.state().document().is_dirty());
+    assert_eq!(undo_depth(&window), 1);
+    click(&mut window, "Cancel");
+    assert_eq!(*scene(&window), changed);
+    // The one that is asked for last is opened
+    let again = folder.path().join("again.ron");
+    std::fs::write(&again, catchlight::io::find_preset("butterfly").unwrap().text).unwrap();
+    window.state_mut().run(Command::Undo, None, &egui::Context::default());
+    for path in [folder.path().join("other.ron"), again] {
+        window.state_mut().run(Command::OpenPath(path), None, &egui::Context::default());
+    }
+    wait_until(&mut window, |app| app.document().scene().name == "Butterfly");
+    settle(&mut window);
+    assert_eq!(scene(&window).name, "Butterfly");
+}
+
+#[test]
+fn a_file_of_the_name_that_an_extension_makes_is_not_replaced_unasked() {
+    if !has_adapter() {
+        return;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let (typed, file) = (folder.path().join("Portrait 1.2"), folder.path().join("Portrait 1.2.ron"));
+    std::fs::write(&file, "another studio").unwrap();
+    let mut window = window_with_answers([typed.clone(), typed]);
+    press(&mut window, Modifiers::COMMAND | Modifiers::SHIFT, Key::S);
+    settle(&mut window);
+    click(&mut window, "Cancel");
+    assert_eq!(std::fs::read_to_string(&file).unwrap(), "another studio");
+    press(&mut window, Modifiers::COMMAND | Modifiers::SHIFT, Key::S);
+    settle(&mut window);
+    click(&mut window, "Replace");
+    assert!(catchlight::io::load_scene(&file).is_ok());
+    assert_eq!(window.state().document().path(), Some(&*file));
+}
+
+#[test]
 fn a_cancelled_import_or_opening_leaves_the_studio_as_it_is() {
     if !has_adapter() {
         return;

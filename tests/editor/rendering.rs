@@ -98,6 +98,50 @@ fn a_render_can_be_cancelled_and_keeps_what_it_has() {
 }
 
 #[test]
+fn a_render_cancelled_before_its_first_sample_leaves_the_picture_of_before() {
+    let Some(mut window) = preset_window() else { return };
+    render_tiny(&mut window);
+    let before = window.state().rendering().developed().unwrap().picture.clone();
+    let mut camera = scene(&window).camera.clone();
+    camera.position.x += 0.5;
+    let rendering = window.state_mut().rendering_mut();
+    rendering.settings.size = PictureSize::Custom(160, 120);
+    rendering.settings.samples = 60_000;
+    // Before a frame takes the first samples
+    for command in [Command::Apply(Action::SetCamera(Box::new(camera))), Command::Render, Command::CancelRender] {
+        window.state_mut().run(command, None, &egui::Context::default());
+    }
+    settle(&mut window);
+    let rendering = window.state().rendering();
+    assert!(!rendering.is_running());
+    assert_eq!(rendering.developed().map(|developed| &developed.picture), Some(&before));
+    assert!(rendering.is_out_of_date(scene(&window)), "the camera has moved since");
+}
+
+#[test]
+fn an_exported_picture_that_is_out_of_date_holds_the_studio_that_it_shows() {
+    if !has_adapter() {
+        return;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("before.exr");
+    let mut window = window_with_answers([file.clone()]);
+    render_tiny(&mut window);
+    let rendered = scene(&window).clone();
+    let mut light = rendered.lights[0].clone();
+    light.position.x += 0.5;
+    light.power.dial_stops -= 1.0;
+    let dial = light.power.dial_stops;
+    window.state_mut().run(Command::Apply(Action::SetLight(Box::new(light))), None, &egui::Context::default());
+    settle(&mut window);
+    window.state_mut().run(Command::ExportPicture, None, &egui::Context::default());
+    settle(&mut window);
+    let shown = catchlight::io::read_rendered(&file).unwrap().picture.scene;
+    assert_eq!(shown.lights[0].position, rendered.lights[0].position, "where it stood");
+    assert_eq!(shown.lights[0].power.dial_stops, dial, "by which it was developed");
+}
+
+#[test]
 fn the_quality_chart_forecasts_time_and_noise_and_uses_measured_renders() {
     let Some(mut window) = preset_window() else { return };
     assert!(window.state().forecaster().forecast().is_none(), "nothing runs for it while it is folded");

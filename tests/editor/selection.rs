@@ -279,3 +279,17 @@ fn what_is_copied_is_pasted_into_another_studio_in_one_step() {
     assert_eq!(window.state().toasts().texts(ToastKind::Info).len(), 1);
     assert_eq!(undo_depth(&window), 2);
 }
+
+#[test]
+fn a_name_that_is_typed_stays_when_a_control_beside_it_is_clicked() {
+    let Some(mut window) = preset_window() else { return };
+    let light = scene(&window).lights[0].clone();
+    window.state_mut().run(Command::Select(Some(Item::Light(light.id))), None, &egui::Context::default());
+    settle(&mut window);
+    panels::search(&mut window, "Name", "Window light");
+    // The click ends the typing and switches the light in one frame
+    let off = window.get_by_label("Off").rect().center();
+    click_at(&mut window, off, Modifiers::NONE);
+    let now = &scene(&window).lights[0];
+    assert_eq!((&*now.name, now.on), ("Window light", false));
+}
