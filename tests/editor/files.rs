@@ -57,6 +57,24 @@ fn unsaved_changes_prompt_before_they_are_lost() {
 }
 
 #[test]
+fn a_picture_that_took_long_is_not_lost_unasked() {
+    if !has_adapter() {
+        return;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let mut window = window_with_answers([folder.path().join("picture.png")]);
+    render_tiny(&mut window);
+    assert!(close_requested(&mut window), "this one did not take long");
+    window.state_mut().rendering_mut().long_render = std::time::Duration::ZERO;
+    assert!(!close_requested(&mut window));
+    click(&mut window, "Cancel");
+    assert!(!close_requested(&mut window));
+    click(&mut window, "Export\u{2026}");
+    assert!(folder.path().join("picture.png").exists());
+    assert!(close_requested(&mut window), "exported, it is not lost");
+}
+
+#[test]
 fn an_empty_studio_is_shown_in_a_work_light_until_a_light_is_on() {
     let Some(mut window) = preset_window() else { return };
     press(&mut window, Modifiers::COMMAND, Key::N);

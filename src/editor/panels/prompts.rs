@@ -34,6 +34,35 @@ pub fn unsaved_changes_ui(ctx: &egui::Context, title: &str, what: &str) -> Optio
     })
 }
 
+/// The answer to the prompt about a picture that is not exported.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PictureAnswer {
+    /// Export it, and stay.
+    Export,
+    /// Continue without it.
+    Discard,
+    /// Cancel the operation.
+    Cancel,
+}
+
+/// Draws the prompt to export a rendered picture before `what`.
+pub fn unexported_picture_ui(ctx: &egui::Context, what: &str) -> Option<PictureAnswer> {
+    let question = Question {
+        name: "unexported picture",
+        width: 420.0,
+        heading: "The picture is not exported",
+        answers: &[
+            ("Export\u{2026}", PictureAnswer::Export, "Choose a file for the picture, and stay here (Enter)"),
+            ("Don't export", PictureAnswer::Discard, "The picture is lost"),
+            ("Cancel", PictureAnswer::Cancel, "Stay here (Esc)"),
+        ],
+        on_enter: Some(PictureAnswer::Export),
+    };
+    widgets::question_dialog(ctx, &question, |ui| {
+        ui.label(format!("The rendered picture is in no file. Export it before {what}?"));
+    })
+}
+
 /// The answer to the prompt about a panorama.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PanoramaAnswer {

@@ -21,6 +21,9 @@ use std::time::Duration;
 /// Albedo under which the light on a surface can't be told from what it reflects.
 const LEAST_ALBEDO: f32 = 0.01;
 
+/// Default of [`Rendering::long_render`].
+const LONG_RENDER: Duration = Duration::from_secs(60);
+
 /// A requested picture. The pointer to the film is only compared.
 #[derive(Debug)]
 struct Requested {
@@ -63,6 +66,8 @@ pub struct Rendering {
     pub display: PictureDisplay,
     /// The faders over the picture.
     pub mix: Mix,
+    /// Time of a render from which on its picture is not thrown away unasked.
+    pub long_render: Duration,
     /// The BLAS cache, shared with the live view.
     trees: Arc<GeometryCache>,
     job: Option<RenderJob>,
@@ -87,6 +92,7 @@ impl Rendering {
             settings: RenderSettings::default(),
             display: PictureDisplay::default(),
             mix: Mix::default(),
+            long_render: LONG_RENDER,
             trees,
             job: None,
             film: None,
@@ -124,6 +130,12 @@ impl Rendering {
         let picture = self.kept_picture().or_else(|| self.former.clone())?;
         let is_exported = self.exported.as_ref().is_some_and(|film| film.ptr_eq(&Arc::downgrade(&picture.film)));
         (!is_exported).then_some(picture)
+    }
+
+    /// Returns true if the picture is not exported, and took long to render.
+    pub fn is_costly_to_lose(&self) -> bool {
+        let took = self.job.as_ref().map(|job| job.progress().elapsed).unwrap_or_default();
+        took >= self.long_render && self.to_keep().is_some()
     }
 
     /// Returns the picture of the job as far as it is rendered.

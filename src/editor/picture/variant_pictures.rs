@@ -174,6 +174,11 @@ impl VariantPictures {
         rendering.to_keep().or_else(|| others.into_iter().find_map(|(_, other)| other.to_keep()))
     }
 
+    /// Returns true if a picture, of any variant, is not exported and took long to render.
+    pub fn is_costly_to_lose(&self, rendering: &Rendering) -> bool {
+        rendering.is_costly_to_lose() || self.others.values().any(Rendering::is_costly_to_lose)
+    }
+
     /// Notes the film whose picture was exported.
     pub fn mark_exported(&mut self, rendering: &mut Rendering, film: &Weak<Film>) {
         for rendering in self.others.values_mut().chain([rendering]) {

@@ -68,9 +68,26 @@ fn desktop_dialog(purpose: FilePurpose, folder: Option<&Path>, file_name: &str) 
 }
 
 /// Shortest time in which a user closes a dialog; a faster answer means that no dialog was shown.
-const FASTEST_USER: Duration = Duration::from_millis(250);
+const FASTEST_USER: Duration = Duration::from_millis(500);
+/// The program that shows a dialog where no service of the desktop does.
+const DIALOG_PROGRAM: &str = "zenity";
+
+/// Returns true if this system can show a dialog: on Linux it needs the session's message bus or a program. Finding out by
+/// asking can take longer than a user does.
+fn can_show_dialogs() -> bool {
+    let path = |variable: &str| std::env::var_os(variable).filter(|value| !value.is_empty());
+    let has_bus = path("DBUS_SESSION_BUS_ADDRESS").is_some()
+        || path("XDG_RUNTIME_DIR").is_some_and(|folder| Path::new(&folder).join("bus").exists());
+    let has_program = || {
+        path("PATH").is_some_and(|path| std::env::split_paths(&path).any(|folder| folder.join(DIALOG_PROGRAM).exists()))
+    };
+    !cfg!(target_os = "linux") || has_bus || has_program()
+}
 
 fn ask_desktop(purpose: FilePurpose, dialog: rfd::FileDialog) -> DialogAnswer {
+    if !can_show_dialogs() {
+        return DialogAnswer::Unavailable;
+    }
     let asked = Instant::now();
     let path = if purpose.is_save() { dialog.save_file() } else { dialog.pick_file() };
     match path {

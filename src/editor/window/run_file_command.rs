@@ -8,7 +8,7 @@ use crate::editor::document::files::{self, OpenedStudio, StudioSource};
 use crate::editor::document::item::Item;
 use crate::editor::document::selection::Selection;
 use crate::editor::document::studio_document::Document;
-use crate::editor::panels::prompts::{self, PathAnswer, PathPrompt, ReplaceAnswer, UnsavedAnswer};
+use crate::editor::panels::prompts::{self, PathAnswer, PathPrompt, PictureAnswer, ReplaceAnswer, UnsavedAnswer};
 use crate::editor::window::app::App;
 use crate::editor::window::background_tasks::{StudioLoad, TaskResult};
 use crate::editor::window::dialogs::DialogAnswer;
@@ -81,6 +81,16 @@ impl App {
         if self.document.is_dirty() {
             self.session.unsaved_prompt = Some(pending);
         } else {
+            self.leave_studio(pending, ctx);
+        }
+    }
+
+    /// Continues with an operation that ends the studio, whose changes are saved or given up: after a prompt for a picture
+    /// that is not exported, and after the files that are being written.
+    fn leave_studio(&mut self, pending: PendingOperation, ctx: &Context) {
+        if self.variant_pictures.is_costly_to_lose(&self.rendering) {
+            self.session.picture_prompt = Some(pending);
+        } else {
             self.execute_pending(pending, ctx);
         }
     }
@@ -88,6 +98,10 @@ impl App {
     fn execute_pending(&mut self, pending: PendingOperation, ctx: &Context) {
         match pending {
             PendingOperation::Load(source) => self.load(source, ctx),
+            PendingOperation::Quit if self.background.exports.is_busy() => {
+                self.session.quits_after_export = true;
+                self.toasts.info("A file is still being written: the window closes when it is complete.");
+            }
             PendingOperation::Quit => {
                 self.session.may_close = true;
                 ctx.send_viewport_cmd(ViewportCommand::Close);
@@ -196,7 +210,7 @@ impl App {
         self.document.mark_saved(path);
         self.session.file_change_put_off = false;
         if let Some(pending) = self.session.after_save.take() {
-            self.execute_pending(pending, ctx);
+            self.leave_studio(pending, ctx);
         }
     }
 
@@ -400,14 +414,23 @@ impl App {
         painter.text(rect.center(), Align2::CENTER_CENTER, text, egui::FontId::proportional(20.0), Color32::WHITE);
     }
 
-    /// Handles a request to close the window: prompts for unsaved changes.
+    /// Closes the window that waits for the files that are being written.
+    pub(super) fn quit_after_export(&mut self, ctx: &Context) {
+        if self.session.quits_after_export && !self.background.exports.is_busy() {
+            self.session.quits_after_export = false;
+            self.execute_pending(PendingOperation::Quit, ctx);
+        }
+    }
+
+    /// Handles a request to close the window: prompts for what would be lost.
     pub(super) fn take_close_request(&mut self, ctx: &Context) {
         if !ctx.input(|i| i.viewport().close_requested()) || self.session.may_close {
             return;
         }
-        if self.document.is_dirty() {
+        let has_picture = self.variant_pictures.is_costly_to_lose(&self.rendering);
+        if self.document.is_dirty() || has_picture || self.background.exports.is_busy() {
             ctx.send_viewport_cmd(ViewportCommand::CancelClose);
-            self.session.unsaved_prompt = Some(PendingOperation::Quit);
+            self.confirm_unsaved(PendingOperation::Quit, ctx);
             if ctx.input(|i| i.viewport().visible()) == Some(false) {
                 // Restore a minimised window, so that the prompt is visible.
                 ctx.send_viewport_cmd(ViewportCommand::Minimized(false));
@@ -427,8 +450,18 @@ impl App {
                     self.session.after_save = Some(pending);
                     out.push(Command::Save);
                 }
-                UnsavedAnswer::Discard => self.execute_pending(pending, ctx),
+                UnsavedAnswer::Discard => self.leave_studio(pending, ctx),
                 UnsavedAnswer::Cancel => {}
+            }
+        }
+        if let Some(pending) = self.session.picture_prompt.clone()
+            && let Some(answer) = prompts::unexported_picture_ui(ctx, pending.description())
+        {
+            self.session.picture_prompt = None;
+            match answer {
+                PictureAnswer::Export => out.push(Command::ExportPicture),
+                PictureAnswer::Discard => self.execute_pending(pending, ctx),
+                PictureAnswer::Cancel => {}
             }
         }
         self.ask_to_replace(ctx, out);

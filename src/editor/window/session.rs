@@ -60,6 +60,10 @@ pub struct Session {
     /// The item and part whose material gets the chosen texture.
     pub(super) texture_for: Option<(Item, Option<String>, TextureSlot)>,
     pub(super) may_close: bool,
+    /// The operation that waits for what the user wants with a picture that is not exported.
+    pub(super) picture_prompt: Option<PendingOperation>,
+    /// The window closes when the files that are being written are complete.
+    pub(super) quits_after_export: bool,
     /// The change of the studio's file that the user is asked about.
     pub(super) file_change: Option<FileChange>,
     /// The user decides about the noticed change before the next save.
@@ -84,6 +88,8 @@ impl Session {
             after_save: None,
             texture_for: None,
             may_close: false,
+            picture_prompt: None,
+            quits_after_export: false,
             file_change: None,
             file_change_put_off: false,
             recovery,
@@ -105,6 +111,7 @@ impl Session {
     pub fn has_prompt(&self) -> bool {
         let is_asking_about_file =
             !self.models.is_empty() || self.panorama.is_some() || self.file_change.is_some() || self.replace.is_some();
+        let is_asking_about_file = is_asking_about_file || self.picture_prompt.is_some();
         self.prompt.is_some() || self.unsaved_prompt.is_some() || is_asking_about_file
     }
 
