@@ -65,7 +65,7 @@ fn a_picture_that_took_long_is_not_lost_unasked() {
     let mut window = window_with_answers([folder.path().join("picture.png")]);
     render_tiny(&mut window);
     assert!(close_requested(&mut window), "this one did not take long");
-    window.state_mut().rendering_mut().long_render = std::time::Duration::ZERO;
+    window.state_mut().rendering_mut().long_render = Duration::ZERO;
     assert!(!close_requested(&mut window));
     click(&mut window, "Cancel");
     assert!(!close_requested(&mut window));

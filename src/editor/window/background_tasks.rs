@@ -155,7 +155,7 @@ mod tests {
         // Those of the open one come in
         let mut tasks = BackgroundTasks::default();
         tasks.begin_studio();
-        tasks.start(move || assets(), || ());
+        tasks.start(assets, || ());
         assert!(matches!(wait_for(&mut tasks, 1)[..], [TaskResult::Assets(..)]));
     }
 

@@ -93,7 +93,7 @@ fn shown_studio(rendered: &Scene, now: &Scene) -> Scene {
         let now = now.light(light.id);
         light.on = now.is_some_and(|now| now.on);
         if let Some(now) = now {
-            (light.power, light.color, light.muted) = (now.power.clone(), now.color.clone(), now.muted);
+            (light.power, light.color, light.muted) = (now.power, now.color, now.muted);
             light.name.clone_from(&now.name);
         }
     }

@@ -155,8 +155,8 @@ impl App {
     fn use_or_ask(&mut self, purpose: FilePurpose, chosen: PathBuf, is_confirmed: bool, out: &mut Vec<Command>) {
         let path = purpose.with_extension_added(chosen.clone());
         let is_own = purpose == FilePurpose::SaveScene && self.document.path() == Some(&path);
-        let is_asked = !is_own && !(is_confirmed && path == chosen);
-        if purpose.is_save() && is_asked && path.exists() {
+        let is_settled = is_own || (is_confirmed && path == chosen);
+        if purpose.is_save() && !is_settled && path.exists() {
             self.session.replace = Some((purpose, path));
         } else {
             out.push(Command::UseFile(purpose, path));
