@@ -212,8 +212,11 @@ impl Reading {
     }
 }
 
-/// Formats an f-number as the nominal label of its nearest third, such as `f/5.6`.
+/// Formats an f-number as the nominal label of its nearest third, such as `f/5.6`; none is shown as `f/0.0`.
 pub fn nearest_third(f_number: f32) -> String {
+    if f_number < 0.05 {
+        return "below f/0.1".to_owned();
+    }
     let thirds = (f_number > 0.0).then(|| Dial::FNumber.thirds(f_number).round() as i32);
     match thirds.and_then(|thirds| Dial::FNumber.nominal_label(thirds)) {
         Some(label) => format!("f/{label}"),
@@ -304,6 +307,6 @@ mod tests {
 
     #[test]
     fn f_numbers_are_labelled_by_their_nearest_third() {
-        assert_eq!([7.9, 5.5, 0.3, 0.0].map(nearest_third), ["f/8", "f/5.6", "f/0.3", "f/0.0"]);
+        assert_eq!([7.9, 5.5, 0.3, 0.0].map(nearest_third), ["f/8", "f/5.6", "f/0.3", "below f/0.1"]);
     }
 }

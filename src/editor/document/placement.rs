@@ -3,11 +3,16 @@
 use crate::editor::document::item::Item;
 use crate::editor::document::readout;
 use crate::figures::{self, Joint, PosableBody};
-use crate::scene::{Aim, Assets, Light, MaterialPreset, Object, ObjectId, Role, Scene, Shape};
+use crate::scene::{Aim, Assets, Light, MaterialPreset, Object, ObjectId, PropModel, Role, Scene, Shape};
 use glam::{Quat, Vec2, Vec3};
 
 /// Distance between the subject's middle and the opening of a V-flat beside it, metres.
 const BESIDE_M: f32 = 0.45;
+/// Depth that a reflector and a flag count with beside the subject, metres.
+const BOARD_M: f32 = 0.3;
+/// Height of a face over the middle of a reflector for it, and the reflector's radius, metres.
+const BELOW_FACE_M: f32 = 0.3;
+const REFLECTOR_RADIUS_M: f32 = 0.56;
 /// Radius of a stool, metres.
 const STOOL_RADIUS_M: f32 = 0.17;
 /// Height of the aim point without a subject, metres.
@@ -103,8 +108,8 @@ pub fn place_object(scene: &Scene, selected: Option<Item>, object: &mut Object) 
         object.transform.rotation_deg.y = front.x.atan2(front.z).to_degrees();
         return;
     }
-    if let Shape::VFlat { wing_m, angle_deg, .. } = object.shape {
-        place_beside(scene, subject(scene, selected), wing_m * (0.5 * angle_deg.to_radians()).cos(), object);
+    if let Some(depth_m) = depth_beside(&object.shape) {
+        place_beside(scene, subject(scene, selected), depth_m, object);
         return;
     }
     let step = if matches!(object.shape, Shape::Figure(_)) { 0.9 } else { 0.5 };
@@ -130,17 +135,28 @@ pub fn stool_under(object: &Object, assets: &Assets) -> Option<Object> {
     Some(stool)
 }
 
-/// Stands a V-flat beside the subject, open to it: on the side away from the key light, or on the other if something is
-/// there. `depth_m` is its depth.
+/// Returns the depth of what stands beside the subject and changes its light, metres: V-flats, reflectors and flags. None
+/// for anything else.
+fn depth_beside(shape: &Shape) -> Option<f32> {
+    match *shape {
+        Shape::VFlat { wing_m, angle_deg, .. } => Some(wing_m * (0.5 * angle_deg.to_radians()).cos()),
+        Shape::Prop(PropModel::Reflector | PropModel::Flag) => Some(BOARD_M),
+        _ => None,
+    }
+}
+
+/// Puts what changes the light beside the subject, open to it: on the side away from the key light, or on the other if
+/// something is there. A reflector is held below the face. `depth_m` is its depth.
 fn place_beside(scene: &Scene, subject: Option<ObjectId>, depth_m: f32, object: &mut Object) {
-    let middle = subject.and_then(|id| scene.object(id)).map_or(Vec3::ZERO, |subject| subject.transform.position);
+    let subject = subject.and_then(|id| scene.object(id));
+    let middle = subject.map_or(Vec3::ZERO, |subject| subject.transform.position);
     let front = towards_camera(scene, middle);
     let right = Vec3::Y.cross(front);
     let key = scene.lights.iter().find(|light| light.role == Role::Key && !light.emitter.is_infinite());
     let from_key = key.map_or(1.0, |key| -(key.position - middle).dot(right).signum());
     let places = [from_key, -from_key].map(|side| (right * side, middle + right * (side * (depth_m + BESIDE_M))));
     let is_free = |place: Vec3| {
-        scene.objects.iter().filter(|o| matches!(o.shape, Shape::VFlat { .. })).all(|o| {
+        scene.objects.iter().filter(|o| depth_beside(&o.shape).is_some()).all(|o| {
             let apart = o.transform.position - place;
             apart.x.hypot(apart.z) > BESIDE_M
         })
@@ -148,6 +164,12 @@ fn place_beside(scene: &Scene, subject: Option<ObjectId>, depth_m: f32, object: 
     let (away, place) = places.into_iter().find(|(_, place)| is_free(*place)).unwrap_or(places[0]);
     (object.transform.position.x, object.transform.position.z) = (place.x, place.z);
     object.transform.rotation_deg.y = (-away.x).atan2(-away.z).to_degrees();
+    if let (Shape::Prop(PropModel::Reflector), Some(Shape::Figure(figure))) =
+        (&object.shape, subject.map(|subject| &subject.shape))
+    {
+        let face_m = middle.y + figures::face_point(figure).y;
+        object.transform.position.y = (face_m - BELOW_FACE_M - REFLECTOR_RADIUS_M).max(0.0);
+    }
 }
 
 /// Returns the candidate position `i`: in a row outwards from the middle, then in further rows towards the front.
@@ -202,6 +224,25 @@ mod tests {
         let trunk: Vec<f32> = meshes.fine.positions.iter().filter(|point| over(point)).map(|point| point.y).collect();
         let lowest = trunk.iter().copied().fold(f32::INFINITY, f32::min);
         assert!(trunk.len() > 100 && (lowest - height_m).abs() < 0.01, "{lowest} m over the floor, stool {height_m} m");
+    }
+
+    #[test]
+    fn a_reflector_is_held_beside_the_face_and_a_flag_stands_on_the_other_side() {
+        let mut scene = Scene::default();
+        add(&mut scene, "Man, 30, crop");
+        add(&mut scene, "Reflector, white");
+        add(&mut scene, "Flag on a stand");
+        let [person, reflector, flag] = [0, 1, 2].map(|index| &scene.objects[index]);
+        let from_person = |board: &Object| (board.transform.position - person.transform.position).with_y(0.0);
+        for board in [reflector, flag] {
+            let faces = board.transform.world_from_object().transform_vector3(Vec3::Z);
+            assert!(faces.dot(from_person(board).normalize()) < -0.99, "{} faces the person", board.name);
+            assert!((0.6..1.2).contains(&from_person(board).length()), "{}", from_person(board));
+        }
+        assert!(from_person(reflector).dot(from_person(flag)) < 0.0, "one on each side");
+        let middle_m = reflector.transform.position.y + REFLECTOR_RADIUS_M;
+        assert!((1.1..1.6).contains(&middle_m), "{middle_m} m, for a face at {:?}", person.shape.label());
+        assert_eq!(flag.transform.position.y, 0.0, "on its stand");
     }
 
     #[test]

@@ -92,6 +92,8 @@ impl PictureView {
             ui.vertical_centered(|ui| {
                 if rendering.is_running() {
                     ui.label(RichText::new("The first samples are on their way\u{2026}").weak());
+                } else if rendering.is_busy() {
+                    ui.label(RichText::new("The picture is being developed\u{2026}").weak());
                 } else {
                     ui.label(RichText::new("There is no picture yet.").weak());
                     ui.add_space(6.0);

@@ -258,11 +258,15 @@ fn slider(ui: &mut Ui, value: &mut f32, parameter: &Parameter) {
     }
 }
 
+/// Greatest height of a list, points: that of the poses.
+const LIST_HEIGHT: f32 = 480.0;
+
 /// Draws a list of named values. One that is none of them is shown as "Own".
 fn picker<'a, T: PartialEq>(ui: &mut Ui, id: &str, choices: impl Iterator<Item = (&'a str, T)>, value: &mut T) {
     let choices: Vec<(&str, T)> = choices.collect();
     let current = choices.iter().find(|(_, choice)| choice == value).map_or("Own", |(name, _)| name);
-    ComboBox::from_id_salt(id).selected_text(current).show_ui(ui, |ui| {
+    // All of a list is in sight
+    ComboBox::from_id_salt(id).selected_text(current).height(LIST_HEIGHT).show_ui(ui, |ui| {
         for (name, choice) in choices {
             ui.selectable_value(value, choice, name);
         }
