@@ -1,24 +1,33 @@
-//! Points inside of closed objects, such as a meter in a box: found by the back faces around them.
+//! Points inside of objects, such as a meter in a person: found by the back faces around them.
 
 use super::ray_caster::RayCaster;
 use crate::math::{Ray, warp};
 use glam::{Vec2, Vec3};
 
-/// Traces so many rays from a point in the tracer's space, evenly over the sphere, and returns the objects of those that
-/// first hit the back of a closed mesh. The room is [`ROOM`](super::render_scene::ROOM).
-pub fn objects_around(caster: &mut RayCaster<'_>, origin: Vec3, rays: u32) -> Vec<u32> {
+/// A back face that a ray hits first.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct BackFace {
+    /// The object; [`ROOM`](super::render_scene::ROOM) for the room.
+    pub object: u32,
+    /// Whether its mesh is closed. A person's is not: clothes are open below.
+    pub is_closed: bool,
+}
+
+/// Traces so many rays from a point in the tracer's space, evenly over the sphere, and returns the back faces that they
+/// hit first.
+pub fn back_faces_around(caster: &mut RayCaster<'_>, origin: Vec3, rays: u32) -> Vec<BackFace> {
     let scene = caster.scene;
     let aggregate = &scene.aggregate;
-    let object = |index: u32| {
+    let back_face = |index: u32| {
         // Directions along a spiral whose turns have the golden ratio
         let u = Vec2::new((index as f32 + 0.5) / rays as f32, (index as f32 * 0.618_034).fract());
         let direction = warp::uniform_sphere(u);
         let hit = caster.intersect(&Ray { origin, direction, t_max: f32::INFINITY })?;
         let instance = &aggregate.instances()[hit.instance as usize];
         let is_back = aggregate.surface(&hit).geometric_normal.dot(direction) > 0.0;
-        (is_back && instance.geometry.is_closed()).then_some(instance.object)
+        is_back.then(|| BackFace { object: instance.object, is_closed: instance.geometry.is_closed() })
     };
-    (0..rays).filter_map(object).collect()
+    (0..rays).filter_map(back_face).collect()
 }
 
 #[cfg(test)]
@@ -28,7 +37,7 @@ mod tests {
     use crate::scene::{Assets, Object, ObjectId, Scene, Shape, Transform};
 
     #[test]
-    fn closed_objects_alone_enclose_a_point_and_a_ray_that_misses_all_is_no_back_face() {
+    fn back_faces_are_around_a_point_in_a_box_and_a_ray_that_misses_all_is_none() {
         let object = |id, shape, position| Object {
             id: ObjectId(id),
             transform: Transform::at(position),
@@ -43,9 +52,12 @@ mod tests {
         };
         let prepared = prepare(&scene, &Assets::default()).unwrap();
         let mut caster = RayCaster::new(&prepared);
-        let mut around = |position: Vec3| objects_around(&mut caster, position - prepared.origin, 64);
-        assert_eq!(around(Vec3::Y * 3.0), [1; 64], "inside of the box");
-        assert_eq!(around(Vec3::Y * -0.1), [0; 0], "below the plane, which is open");
-        assert_eq!(around(Vec3::Y * 9.0), [0; 0], "above the box, where most rays miss");
+        let mut around = |position: Vec3| back_faces_around(&mut caster, position - prepared.origin, 64);
+        let of_box = BackFace { object: 1, is_closed: true };
+        assert_eq!(around(Vec3::Y * 3.0), [of_box; 64], "inside of the box");
+        let below = around(Vec3::Y * -0.1);
+        let of_plane = BackFace { object: 0, is_closed: false };
+        assert!((20..=32).contains(&below.len()) && below.iter().all(|face| *face == of_plane), "{below:?}");
+        assert_eq!(around(Vec3::Y * 9.0), [], "above the box, where most rays miss");
     }
 }

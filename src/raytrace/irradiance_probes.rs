@@ -8,7 +8,7 @@
 //! on its sides.
 
 use super::control::RenderControl;
-use super::enclosure::objects_around;
+use super::enclosure::back_faces_around;
 use super::film::{Layer, MAX_LIGHT_LAYERS, NonFiniteGate, NonFiniteReport, assign_layers};
 use super::geometry_cache::GeometryCache;
 use super::lights::TracedLight;
@@ -153,7 +153,8 @@ fn assign_invisible_layers(scene: &Scene, lights: &mut [(TracedLight, &Light)]) 
 /// Returns true if a quarter of the rays from a point first hit the back of a closed object.
 fn is_inside(tracer: &mut PathTracer<'_>, position: Vec3) -> bool {
     let origin = position - tracer.caster.scene.origin;
-    4 * objects_around(&mut tracer.caster, origin, INSIDE_RAYS).len() >= INSIDE_RAYS as usize
+    let faces = back_faces_around(&mut tracer.caster, origin, INSIDE_RAYS);
+    4 * faces.iter().filter(|face| face.is_closed).count() >= INSIDE_RAYS as usize
 }
 
 /// The sums of a probe.

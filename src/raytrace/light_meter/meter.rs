@@ -8,7 +8,7 @@ use super::sampling::RoundSampler;
 use super::studio::{MeteredLight, MeteredStudio, blank_reading};
 use crate::photo::meter::{LightReading, Reading};
 use crate::raytrace::control::RenderControl;
-use crate::raytrace::enclosure::objects_around;
+use crate::raytrace::enclosure::back_faces_around;
 use crate::raytrace::film::NonFiniteReport;
 use crate::raytrace::geometry_cache::GeometryCache;
 use crate::raytrace::prepare::PrepareError;
@@ -122,12 +122,12 @@ impl LightMeter {
         listed.chain(by_layer.get(self.studio.emission_layer()).cloned()).collect()
     }
 
-    /// Returns the closed object around a point in the tracer's space: nearly every ray from there first hits a back face.
+    /// Returns the object around a point in the tracer's space: nearly every ray from there first hits a back face.
     fn enclosing_object(&self, origin: Vec3) -> Option<u32> {
         const RAYS: u32 = 64;
         let mut caster = RayCaster::new(&self.studio.scene);
-        let mut objects = objects_around(&mut caster, origin, RAYS);
-        objects.retain(|object| *object != ROOM);
+        let faces = back_faces_around(&mut caster, origin, RAYS);
+        let objects: Vec<u32> = faces.iter().map(|face| face.object).filter(|object| *object != ROOM).collect();
         objects.last().copied().filter(|_| objects.len() >= RAYS as usize - 4)
     }
 }
