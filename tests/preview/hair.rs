@@ -184,6 +184,33 @@ fn hair_in_all_the_light_of_a_portrait_is_as_bright_as_the_tracers() {
 }
 
 #[test]
+fn eyes_have_light_under_their_lashes() {
+    // An eighth of the lashes, fifteen times as wide, kept all of the fill light from the whites.
+    const LIMIT: f32 = 0.5;
+    const WHITE: u8 = 170;
+    let Some(mut renderer) = shared_renderer() else { return };
+    let mut loaded = shipped("rembrandt");
+    let Aim::Object { offset, .. } = &mut loaded.scene.camera.aim else { panic!("the camera aims at the figure") };
+    *offset = Vec3::new(0.0, 1.68, 0.11);
+    loaded.scene.camera.focal_length_mm = 500.0;
+    loaded.scene.lights.retain(|light| light.name == "Fill panel");
+    let size = (180, 90);
+    let view = || PreviewInput::camera_view(&loaded.scene, &loaded.assets, size);
+    let options = Options { channel: Channel::BaseColor, ..Options::default() };
+    let base_colors = renderer.picture(&PreviewInput { options, ..view() }).unwrap();
+    let is_white = |(x, y, pixel): (u32, u32, &image::Rgb<u8>)| (pixel.0.iter().min() > Some(&WHITE)).then_some((x, y));
+    let whites: Vec<(u32, u32)> = base_colors.enumerate_pixels().filter_map(is_white).collect();
+    assert!(whites.len() > 100, "{} pixels of the whites", whites.len());
+    let preview = renderer.linear_picture(&PreviewInput { options: Options::direct_only(), ..view() }).unwrap();
+    let traced = each_light::traced_with(&loaded, &Default::default(), size, SPP, Method::Direct);
+    let ours: f32 = whites.iter().map(|&(x, y)| color::luminance(preview.at(x, y).into())).sum();
+    let theirs: f32 = whites.iter().map(|&(x, y)| traced[(y * size.0 + x) as usize]).sum();
+    let error = (ours / theirs).log2();
+    println!("{} pixels, {error:+.2} stops", whites.len());
+    assert!(error.abs() < LIMIT, "{error:+.2} stops");
+}
+
+#[test]
 fn brows_and_lashes_are_in_the_shadow_of_the_head() {
     // They took the visibility of the skin that they lie on, which counted as lit where it faces away from the light.
     let Some(mut renderer) = shared_renderer() else { return };

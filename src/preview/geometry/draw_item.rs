@@ -1,6 +1,7 @@
 //! Draw items: a run of a mesh's triangles with its surface, its pass and its face culling.
 
 use super::mesh_cache::MeshKey;
+use super::strands::StrandShadows;
 use super::texture_cache::TextureKeys;
 use crate::preview::input::sample_point;
 use crate::scene::Shape;
@@ -120,6 +121,8 @@ pub(crate) struct StrandItem {
     pub mesh: MeshKey,
     pub instances: Range<u32>,
     pub mean_radius_m: f32,
+    /// How it is drawn into shadow maps.
+    pub shadows: StrandShadows,
     /// Index of its surface record.
     pub surface: u32,
     /// Index of its box among the casters.
@@ -152,8 +155,14 @@ mod tests {
 
     #[test]
     fn thin_strands_are_as_many_as_cover_the_area_of_all() {
-        let item =
-            StrandItem { mesh: MeshKey::Shared(0), instances: 0..5000, mean_radius_m: 4e-5, surface: 0, caster: 0 };
+        let item = StrandItem {
+            mesh: MeshKey::Shared(0),
+            instances: 0..5000,
+            mean_radius_m: 4e-5,
+            shadows: StrandShadows::Dense,
+            surface: 0,
+            caster: 0,
+        };
         // A pixel of 0.4 mm is five hairs wide; at twice the scale they are twice as wide.
         assert_eq!(item.visible(4e-4, 1.0, 0, &Affine3A::IDENTITY), 0..1000);
         assert_eq!(item.visible(4e-4, 1.0, 0, &Affine3A::from_scale(Vec3::splat(2.0))), 0..2000);

@@ -4,6 +4,7 @@ use super::caches::GeometryCaches;
 use super::draw_item::{DrawItem, DrawPass, ShadowCasting, Sides, StrandItem};
 use super::mesh_cache::{EmitterSurface, MeshKey};
 use super::oriented_box::OrientedBox;
+use super::strands::StrandShadows;
 use super::surface::{
     FLAG_EMITTER, FLAG_GLOWS, FLAG_HOVERED, FLAG_RELIEF, FLAG_SELECTED, FLAG_SHORT_FIBRE, FLAG_SMOOTH_GLOSS, GpuDraw,
     GpuSurface, diffusion_m, packed_layers,
@@ -146,10 +147,13 @@ impl DrawList {
             let record = &mut self.surfaces[surface as usize];
             record.base_color = fibre.absorption_per_radius().into();
             record.diffusion_m = [0.0; 3];
-            record.flags |= if part.mean_length_m < SHORT_STRAND_M { FLAG_SHORT_FIBRE } else { 0 };
+            let is_short = part.mean_length_m < SHORT_STRAND_M;
+            record.flags |= if is_short { FLAG_SHORT_FIBRE } else { 0 };
             (record.roughness, record.metallic) = (fibre.longitudinal_variance(), fibre.azimuthal_scale());
             let (instances, caster) = (part.instances.clone(), self.casters.len());
-            self.strands.push(StrandItem { mesh, instances, mean_radius_m: part.mean_radius_m, surface, caster });
+            let shadows = if is_short { StrandShadows::Sparse } else { StrandShadows::Dense };
+            let mean_radius_m = part.mean_radius_m;
+            self.strands.push(StrandItem { mesh, instances, mean_radius_m, shadows, surface, caster });
         }
     }
 

@@ -49,8 +49,11 @@ const FILTER_TAPS: u32 = 10u;
 const DRAFT_FILTER_TAPS: u32 = 6u;
 // Rotation by the golden angle, from one tap to the next.
 const GOLDEN_TURN: mat2x2f = mat2x2f(-0.737368878, 0.675490294, -0.675490294, -0.737368878);
-// Depth bias relative to the distance; in a parallel view in texels, up to a maximum in metres.
+// Depth bias relative to the distance, and in texels of more than a millimetre: lids and lashes that a coarse map does not
+// resolve would keep all light from an eye. In a parallel view in texels, up to a maximum in metres.
 const RELATIVE_BIAS: f32 = 5e-4;
+const COARSE_TEXEL_BIAS: f32 = 0.8;
+const FINE_TEXEL_M: f32 = 1e-3;
 const PARALLEL_BIAS: f32 = 0.5;
 const MOST_PARALLEL_BIAS_M: f32 = 1e-3;
 
@@ -140,7 +143,8 @@ fn receiver(slot: u32, position: vec3f, geometric_normal: vec3f, is_fibre: bool,
     r.at = vec2f(plane_point.x - low.x, shadows.slots[slot].field.y - (plane_point.y - low.y)) * texels;
     let parallel_bias = min(PARALLEL_BIAS * texel, MOST_PARALLEL_BIAS_M);
     let parallel_depth = (shadows.slots[slot].far_m + parallel_bias - local.z) / near;
-    r.depth = select(near / local.z * (1.0 + RELATIVE_BIAS), parallel_depth, parallel);
+    let bias = RELATIVE_BIAS + COARSE_TEXEL_BIAS * max(texel - FINE_TEXEL_M / max(distance, 1e-6), 0.0);
+    r.depth = select(near / local.z * (1.0 + bias), parallel_depth, parallel);
     let slope = select(near * normal.xy / height, normal.xy / (normal.z * near), parallel) / texels;
     // Clamp the slope of planes that the light sees edge-on; they are dark
     let steepest = 0.25 * select(abs(r.depth), 1.0, parallel);

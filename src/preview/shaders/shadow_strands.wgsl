@@ -6,10 +6,8 @@ struct View {
 
 @group(2) @binding(0) var<uniform> view: View;
 
-// Factor on the width, for an eighth of the strands is drawn: see `SHADOW_FRACTION` in `strands.rs`. It is more than 8,
-// since a mesh for the live view has strands with less area than those that they stand for: fitted to the tracer's
-// pictures of heads of hair and of shipped portraits. With 12, rims of light from behind are a quarter of a stop brighter.
-const SHADOW_WIDTH: f32 = 15.0;
+// Factor on the width: see `StrandShadows` in `strands.rs`.
+override SHADOW_WIDTH: f32 = 1.0;
 
 @vertex
 fn vertex(

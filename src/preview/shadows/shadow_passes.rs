@@ -9,7 +9,7 @@ use super::plan::ShadowPlan;
 use crate::preview::frame_resources::FrameResources;
 use crate::preview::geometry::draw_item::{DrawItem, StrandItem};
 use crate::preview::geometry::draw_list::DrawList;
-use crate::preview::geometry::strands::{SHADOW_FRACTION, StrandPipelines};
+use crate::preview::geometry::strands::StrandPipelines;
 use crate::preview::gpu::pipeline::BindGroupLayouts;
 use eframe::wgpu;
 
@@ -73,8 +73,9 @@ impl ShadowPasses {
             }
         }
         for item in &casters.strands {
-            pass.set_pipeline(&self.strands.shadow_map);
-            resources.caches.draw_strands(&mut pass, item, item.first(SHADOW_FRACTION));
+            let (fraction, _) = item.shadows.fraction_and_width();
+            pass.set_pipeline(self.strands.shadow_map(item.shadows));
+            resources.caches.draw_strands(&mut pass, item, item.first(fraction));
         }
     }
 
