@@ -31,15 +31,17 @@ pub fn aim_offset(object: &Object, assets: &Assets) -> Vec3 {
     }
 }
 
-/// Returns the subject: the selected object, else the first figure, else the first object that is no backdrop.
+/// Returns the subject: the selected object, else the first figure, else the first object. Backdrops, and what stands beside
+/// a subject for its light, are none.
 pub fn subject(scene: &Scene, selected: Option<Item>) -> Option<ObjectId> {
+    let is_subject = |object: &&Object| !object.shape.is_sheet() && depth_beside(&object.shape).is_none();
     let selected = match selected {
-        Some(Item::Object(id)) => scene.object(id).filter(|o| !o.shape.is_sheet()),
+        Some(Item::Object(id)) => scene.object(id).filter(is_subject),
         _ => None,
     };
     selected
         .or_else(|| scene.objects.iter().find(|o| matches!(o.shape, Shape::Figure(_))))
-        .or_else(|| scene.objects.iter().find(|o| !o.shape.is_sheet()))
+        .or_else(|| scene.objects.iter().find(is_subject))
         .map(|o| o.id)
 }
 
@@ -193,9 +195,11 @@ mod tests {
     use crate::editor::document::catalog;
     use crate::scene::{Asset, AssetRef, Figure};
 
+    /// Adds an object as the shelf does: the last one is selected.
     fn add(scene: &mut Scene, name: &str) {
         let mut object = catalog::object_named(name).unwrap();
-        place_object(scene, None, &mut object);
+        let selected = scene.objects.last().map(|object| Item::Object(object.id));
+        place_object(scene, selected, &mut object);
         Action::AddObject(Box::new(object)).apply(scene).unwrap();
     }
 

@@ -392,9 +392,8 @@ impl App {
                 }
                 "hdr" => out.push(Command::EnvironmentMapPath(self.light_for_drop(), path)),
                 _ => self.toasts.error(format!(
-                    "Only studios (.ron), rendered pictures (.exr), models ({}), photometric files (.ies, .ldt) and \
-                     panoramas (.hdr, .exr) can be dropped here, not {}.",
-                    io::model_extension_list(),
+                    "Only a studio (.ron), a rendered picture (.exr), {} can be dropped here, not {}.",
+                    io::importable_files_text(),
                     path.display()
                 )),
             }
@@ -409,8 +408,8 @@ impl App {
         let painter = ctx.layer_painter(LayerId::new(Order::Foreground, Id::unique("drop hint")));
         let rect = ctx.content_rect();
         painter.rect_filled(rect, 0.0, Color32::from_black_alpha(170));
-        let models = io::model_extension_list();
-        let text = format!("Drop a studio (.ron) to open it, a model ({models}) or light (.ies, .ldt) to bring it in");
+        let to_open = "Drop a studio (.ron) or a rendered picture (.exr) to open it";
+        let text = format!("{to_open},\n{} to bring it in", io::importable_files_text());
         painter.text(rect.center(), Align2::CENTER_CENTER, text, egui::FontId::proportional(20.0), Color32::WHITE);
     }
 
