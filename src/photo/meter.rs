@@ -212,7 +212,8 @@ impl Reading {
     }
 }
 
-/// Formats an f-number as the nominal label of its nearest third, such as `f/5.6`; none is shown as `f/0.0`.
+/// Formats an f-number as the nominal label of its nearest third, such as `f/5.6`; those under 0.05, which would
+/// read `f/0.0`, as `below f/0.1`.
 pub fn nearest_third(f_number: f32) -> String {
     if f_number < 0.05 {
         return "below f/0.1".to_owned();

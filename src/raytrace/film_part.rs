@@ -242,6 +242,11 @@ fn shown(rgb: DVec3) -> [f32; 3] {
 }
 
 impl PartAovs {
+    /// Returns true if mirrors or clear glass show what is not hit first.
+    pub fn has_mirrors(&self) -> bool {
+        (&self.seen_albedo, &self.seen_normal) != (&self.albedo, &self.normal)
+    }
+
     fn add(&mut self, sample: &AovPicture) {
         // A part has its own size and noise
         let AovPicture {

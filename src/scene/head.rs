@@ -52,7 +52,7 @@ impl HeadDial {
 
     /// Returns the end that a power lies beyond, stops from full power; none if the head can be set to it.
     pub fn beyond(&self, stops: f32) -> Option<BeyondDial> {
-        /// Of a dial in thirds, stops.
+        // Rounding of a dial in thirds, stops
         const ROUNDING: f32 = 1e-3;
         match stops {
             stops if stops > ROUNDING => Some(BeyondDial::Full),

@@ -44,7 +44,7 @@ mod tests {
     }
 
     #[test]
-    fn several_lights_were_turned_beyond_full_power_and_between_the_settings_of_their_heads() {
+    fn several_lights_keep_their_ratios_and_go_to_settings_that_their_heads_have() {
         let lights = [light(-2.0, Some(3)), light(-1.0, Some(10)), light(-0.5, None)];
         let up = turned(&lights, 1.0).unwrap();
         assert_eq!(up, [-1.0, 0.0, 0.5]);

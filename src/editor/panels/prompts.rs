@@ -1,4 +1,4 @@
-//! Modal prompts: unsaved changes, and a path on desktops without file dialogs.
+//! Modal prompts: what would be lost or replaced, panoramas, and a path on desktops without file dialogs.
 
 use crate::editor::commands::file_purpose::FilePurpose;
 use crate::editor::ui::widgets::{self, Question};

@@ -333,7 +333,7 @@ impl Rendering {
         }
     }
 
-    /// Shows the picture before a render again that has ended without one of its own.
+    /// Brings the picture of before a render back, which has ended without one of its own.
     fn show_former(&mut self) {
         let Some(KeptPicture { film, scene, settings, is_complete }) = self.former.take() else { return };
         self.develop_failure = self.failure().map(str::to_owned);

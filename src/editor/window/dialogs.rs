@@ -72,8 +72,8 @@ const FASTEST_USER: Duration = Duration::from_millis(500);
 /// The program that shows a dialog where no service of the desktop does.
 const DIALOG_PROGRAM: &str = "zenity";
 
-/// Returns true if this system can show a dialog: on Linux it needs the session's message bus or a program. Finding out by
-/// asking can take longer than a user does.
+/// Returns true if this system can show a dialog: on Linux it needs the session's message bus or a program. Without them an
+/// attempt fails, on a busy machine later than a user would cancel.
 fn can_show_dialogs() -> bool {
     let path = |variable: &str| std::env::var_os(variable).filter(|value| !value.is_empty());
     let has_bus = path("DBUS_SESSION_BUS_ADDRESS").is_some()

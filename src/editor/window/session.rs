@@ -109,10 +109,13 @@ impl Session {
 
     /// Returns true while a prompt about the open studio is open.
     pub fn has_prompt(&self) -> bool {
-        let is_asking_about_file =
-            !self.models.is_empty() || self.panorama.is_some() || self.file_change.is_some() || self.replace.is_some();
-        let is_asking_about_file = is_asking_about_file || self.picture_prompt.is_some();
-        self.prompt.is_some() || self.unsaved_prompt.is_some() || is_asking_about_file
+        self.prompt.is_some()
+            || self.unsaved_prompt.is_some()
+            || self.picture_prompt.is_some()
+            || self.replace.is_some()
+            || self.panorama.is_some()
+            || self.file_change.is_some()
+            || !self.models.is_empty()
     }
 
     /// Returns true while a prompt is open in the window.

@@ -92,7 +92,7 @@ fn layer_part(index: usize, layer: &PartLayer, size: (usize, usize)) -> ExrPart<
 fn aov_channels(aovs: &PartAovs, width: usize) -> Vec<ExrChannel<'_>> {
     let mut all: Vec<_> = pixel_sum_channels(ALBEDO_CHANNELS, width, &aovs.albedo).collect();
     all.extend(pixel_sum_channels(NORMAL_CHANNELS, width, &aovs.normal));
-    if (&aovs.seen_albedo, &aovs.seen_normal) != (&aovs.albedo, &aovs.normal) {
+    if aovs.has_mirrors() {
         all.extend(pixel_sum_channels(SEEN_ALBEDO_CHANNELS, width, &aovs.seen_albedo));
         all.extend(pixel_sum_channels(SEEN_NORMAL_CHANNELS, width, &aovs.seen_normal));
     }
