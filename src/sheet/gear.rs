@@ -27,9 +27,11 @@ pub fn gear(scene: &Scene, on_booms: &[usize], units: Units) -> Vec<(usize, Stri
     for object in scene.objects.iter().filter(|object| object.visible) {
         match object.shape {
             Shape::Figure(_) => {}
-            Shape::Sweep { width_m, .. } => {
+            Shape::Sweep { width_m, height_m, .. } => {
                 let width = units.distance(width_m * object.transform.scale.x);
                 add(&mut list, format!("{}, {width} wide, on a crossbar", object.name));
+                let up_m = object.transform.position.y + height_m * object.transform.scale.y;
+                add(&mut list, format!("Crossbar {} up, with its two stands", units.distance(up_m)));
             }
             _ => add(&mut list, object.name.clone()),
         }

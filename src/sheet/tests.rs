@@ -259,6 +259,7 @@ fn a_light_whose_stand_is_seen_needs_a_boom() {
     assert_eq!(count("Softbox or panel 60 x 90 cm"), 3);
     assert_eq!((count("Boom with counterweight"), count("Light stand")), (1, 3));
     assert_eq!(count("Grey paper, 2.72 m wide, on a crossbar"), 1);
+    assert_eq!(count("Crossbar 2.50 m up, with its two stands"), 1);
 }
 
 /// Returns the text of the elements of an XML file.
