@@ -1,11 +1,13 @@
 //! The places of a light's front, its head and its stand in the room.
 
-use crate::scene::{Emitter, Light, ModifierShape, Scene};
+use crate::scene::{Emitter, Light, ModifierKind, ModifierShape, Scene};
 use glam::{Affine3A, Vec3};
 use std::f32::consts::TAU;
 
 /// Depth of a softbox or a dish behind its front, as a part of its shorter edge, and at most so many metres.
 const DEPTH: (f32, f32) = (0.5, 0.45);
+/// Depth of the canopy of an umbrella that reflects, as a part of its diameter.
+const CANOPY: f32 = 0.22;
 /// Length and radius of a bare head or of one with a reflector, metres.
 const HEAD_M: (f32, f32) = (0.28, 0.09);
 /// Points of a round front.
@@ -38,6 +40,12 @@ impl LightShape {
                 let corners = [(-0.5, -0.5), (0.5, -0.5), (0.5, 0.5), (-0.5, 0.5)];
                 let front = corners.map(|(x, y)| at(&frame, [x * width_m, y * height_m, 0.0])).to_vec();
                 (front, circle(HEAD_M.1, depth_m), depth_m)
+            }
+            Emitter::RoundPanel { diameter_m } if is_umbrella(light) => {
+                let depth_m = CANOPY * diameter_m;
+                let bowl = [(0.4, 0.4), (0.27, 0.75), (0.1, 1.0)];
+                let back = bowl.into_iter().flat_map(|(out, deep)| circle(out * diameter_m, deep * depth_m));
+                (circle(0.5 * diameter_m, 0.0), back.collect(), depth_m)
             }
             Emitter::RoundPanel { diameter_m } => {
                 let depth_m = (DEPTH.0 * diameter_m).min(DEPTH.1);
@@ -74,6 +82,10 @@ impl LightShape {
     pub fn top_m(&self) -> f32 {
         self.points().map(|point| point.y).fold(f32::NEG_INFINITY, f32::max)
     }
+}
+
+fn is_umbrella(light: &Light) -> bool {
+    ModifierShape::of(light).is_some_and(|shape| shape.kind == ModifierKind::Umbrella)
 }
 
 fn at(frame: &Affine3A, local: [f32; 3]) -> Vec3 {

@@ -5,7 +5,9 @@ use crate::photo::meter::nearest_third;
 use crate::photo::text::{power_fraction, signed_stops, three_digits};
 use crate::photo::{LightBearing, dial_text};
 use crate::raytrace::RenderControl;
-use crate::scene::{ColorSource, Emitter, Gel, Light, Modifier, NamedModifier, Output, Role};
+use crate::scene::{
+    ColorSource, Emitter, Gel, Light, Modifier, ModifierKind, ModifierShape, NamedModifier, Output, Role,
+};
 use crate::setup::{LightExposure, MeteredAt, MeteredSetup};
 use glam::Vec3;
 
@@ -117,9 +119,9 @@ impl LightFacts {
         let none = || cell("\u{2013}".to_owned(), "");
         let off = if self.is_on { "" } else { ", off" };
         let distance = match (self.height_m, &self.bearing, self.aim_m) {
-            (Some(_), _, Some(aim_m)) => cell(units.distance(aim_m), "to its aim"),
+            (Some(_), _, Some(aim_m)) => cell(units.distance(aim_m), "straight to its aim"),
             (Some(_), Some(place), None) if self.metered_at != MeteredAt::Aim => {
-                cell(units.distance(place.distance_m), "to the subject")
+                cell(units.distance(place.distance_m), "straight to subject")
             }
             _ => none(),
         };
@@ -180,14 +182,14 @@ pub fn modifier_text(light: &Light, units: Units) -> String {
     }
     match NamedModifier::of(&light.emitter, &light.modifier) {
         Some(named) => named.name.to_owned(),
-        None => front_text(&light.emitter, units) + &accessories(&light.modifier).concat(),
+        None => front_text(light, units) + &accessories(&light.modifier).concat(),
     }
 }
 
-fn front_text(emitter: &Emitter, units: Units) -> String {
-    match *emitter {
+fn front_text(light: &Light, units: Units) -> String {
+    match light.emitter {
         Emitter::RectPanel { width_m, height_m } => format!("Softbox or panel {}", units.size(&[width_m, height_m])),
-        Emitter::RoundPanel { diameter_m } => format!("Round front {}", units.size(&[diameter_m])),
+        Emitter::RoundPanel { diameter_m } => format!("{} {}", round_name(light), units.size(&[diameter_m])),
         Emitter::Spot { inner_deg, outer_deg } => {
             format!("Reflector, beam {inner_deg:.0}\u{b0} to {outer_deg:.0}\u{b0}")
         }
@@ -195,6 +197,17 @@ fn front_text(emitter: &Emitter, units: Units) -> String {
         Emitter::Point => "Point of light".to_owned(),
         Emitter::Sun { .. } => "Sun".to_owned(),
         Emitter::Surround => "Surround".to_owned(),
+    }
+}
+
+/// Returns the kind of a round modifier: what the live view puts on the set for it.
+fn round_name(light: &Light) -> &'static str {
+    match ModifierShape::of(light).map(|shape| shape.kind) {
+        Some(ModifierKind::Umbrella) => "Umbrella",
+        Some(ModifierKind::ShootThrough) => "Shoot-through umbrella",
+        Some(ModifierKind::Dish) => "Dish or reflector",
+        Some(_) => "Octa or umbrella",
+        None => "Large round panel",
     }
 }
 
@@ -278,6 +291,14 @@ mod tests {
         assert_eq!(modifier_text(&light, Units::Metres), named.name);
         light.modifier = Modifier { grid_deg: Some(30.0), doors: Some(BarnDoors::HALF_OPEN), ..Modifier::default() };
         assert_eq!(modifier_text(&light, Units::Feet), "Softbox or panel 24 x 35\", 30\u{b0} grid, barn doors");
+        let round = |diameter_m| {
+            let light = Light::new(Emitter::RoundPanel { diameter_m }, Output::Lumens(1.0));
+            modifier_text(&light, Units::Metres)
+        };
+        assert_eq!(
+            [0.21, 1.5, 1.65, 4.0].map(round),
+            ["Dish or reflector 21 cm", "Octa or umbrella 150 cm", "Umbrella 165 cm", "Large round panel 400 cm"]
+        );
         light.color.gel = Gel::Mired(109.0);
         assert_eq!(head_text(&light, Units::Metres), "Flash 400 Ws, 5500 K, 1/2 CTO");
         assert_eq!(output_text(&light.power.output, -2.0, Units::Metres), "100 Ws");
