@@ -6,15 +6,22 @@ use super::drawing::Rgb;
 use super::gear::gear;
 use super::lengths::Units;
 use super::light_facts::LightFacts;
-use super::view::{StudioView, ViewFrom, print_color};
+use super::view::{Sight, StudioView, ViewFrom, print_color};
 use crate::gear::{GearList, shortages};
 use crate::photo::Picture;
 use crate::raytrace::{GeometryCache, PrepareError, RenderControl};
 use crate::scene::{Assets, Scene};
-use crate::setup::MeteredSetup;
+use crate::setup::{MeteredAt, MeteredSetup};
 
 /// The check of a set-up that has none.
 const NOTHING: &str = "Nothing that a plan can see.";
+
+/// The places between which the distances of plan and table are measured.
+pub const DISTANCES: [&str; 2] = [
+    "Distances in the plan: along the floor, from under the middle of a light's front to under the red ring (the subject) \
+     or what the light aims at.",
+    "Distances in the table: straight through the air, as a tape pulled from the middle of the front to the same point.",
+];
 
 /// A light of a sheet.
 #[derive(Clone, Debug)]
@@ -72,10 +79,16 @@ impl SheetContent {
         let mut facts: Vec<LightFacts> =
             facts.map(|(index, light)| LightFacts::new(&setup, index + 1, light, units, control)).collect();
         LightFacts::compare_with_key(&mut facts);
+        let subject = setup.subject.position;
+        let sights = facts.iter().zip(&scene.lights).map(|(facts, light)| {
+            let aim = setup.aim_of(light);
+            // The table gives the distance to the same point
+            let target = if facts.metered_at == MeteredAt::Aim { aim } else { Some(subject) };
+            Sight { aim, target }
+        });
+        let sights: Vec<Sight> = sights.collect();
         let lights = facts.into_iter().zip(&scene.lights);
         let lights = lights.map(|(facts, light)| SheetLight { facts, color: print_color(light) });
-        let subject = setup.subject.position;
-        let aims: Vec<_> = scene.lights.iter().map(|light| setup.aim_of(light)).collect();
         let content = SheetContent {
             title: Some(scene.title())
                 .filter(|title| !title.is_empty())
@@ -86,7 +99,7 @@ impl SheetContent {
             camera: camera_facts(&setup, units),
             subject: subject_facts(&setup, setup.background().as_ref(), units),
             lights: lights.collect(),
-            views: [ViewFrom::Above, ViewFrom::Side].map(|from| StudioView::new(scene, assets, subject, &aims, from)),
+            views: [ViewFrom::Above, ViewFrom::Side].map(|from| StudioView::new(scene, assets, subject, &sights, from)),
             gear: gear(scene, &checks.stands_seen, units),
             checks: if checks.texts.is_empty() { vec![NOTHING.to_owned()] } else { checks.texts },
         };

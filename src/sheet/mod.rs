@@ -3,7 +3,8 @@
 //! [`SheetContent`] collects facts from the scene and from the light meter; `page` lays them out as a [`Drawing`] in
 //! millimetres; `svg` and `pdf` write drawings, `html` writes a page that reads well on a phone.
 //!
-//! Data flow: [`MeteredSetup`](crate::setup::MeteredSetup) -> `camera_facts`, `light_facts`, `checks` -> `gear`; `silhouette` -> `view`; all of them ->
+//! Data flow: [`MeteredSetup`](crate::setup::MeteredSetup) -> `camera_facts`, `light_facts`, `checks` -> `gear`; `silhouette` -> `view` -> `view_labels` -> `view_drawing`; all of
+//! them ->
 //! `content` -> `page` -> `svg`, `pdf`. `lesson` makes sheets of pictures in which one thing changes.
 
 mod camera_facts;
@@ -15,6 +16,7 @@ mod file;
 mod font;
 mod gear;
 mod html;
+mod label_places;
 mod lengths;
 mod lesson;
 mod light_facts;
@@ -23,6 +25,8 @@ mod pdf;
 mod silhouette;
 mod svg;
 mod view;
+mod view_drawing;
+mod view_labels;
 
 pub use content::{SheetContent, SheetLight};
 pub use drawing::Drawing;
@@ -33,5 +37,7 @@ pub use lesson::{
 };
 pub use light_facts::{COLUMNS, LightFacts};
 
+#[cfg(test)]
+mod plan_tests;
 #[cfg(test)]
 mod tests;

@@ -1,10 +1,11 @@
 //! The sheet on a page of A4: picture, facts, plan, elevation, lights, gear and checks.
 
-use super::content::SheetContent;
+use super::content::{DISTANCES, SheetContent};
 use super::drawing::{Align, Drawing, Element, Stroke};
 use super::font::Font;
 use super::light_facts::COLUMNS;
-use super::view::{badge, ruler};
+use super::view_drawing::ruler;
+use super::view_labels::badge;
 use glam::{Vec2, vec2};
 
 /// A4, upright, millimetres.
@@ -12,11 +13,11 @@ const PAGE_MM: Vec2 = Vec2::new(210.0, 297.0);
 const MARGIN_MM: f32 = 12.0;
 const WIDTH_MM: f32 = PAGE_MM.x - 2.0 * MARGIN_MM;
 /// Most of the picture's width and height.
-const PICTURE_MM: Vec2 = Vec2::new(88.0, 66.0);
+const PICTURE_MM: Vec2 = Vec2::new(69.0, 46.0);
 /// Widths of the columns of the table of lights.
-const COLUMNS_MM: [f32; 7] = [34.0, 49.0, 30.0, 20.0, 20.0, 15.0, 18.0];
+const COLUMNS_MM: [f32; 7] = [38.0, 46.0, 27.0, 23.0, 18.0, 16.0, 18.0];
 /// Width of the column of names of facts.
-const NAMES_MM: f32 = 24.0;
+const NAMES_MM: f32 = 20.0;
 const TITLE_MM: f32 = 6.2;
 const HEADING_MM: f32 = 3.6;
 const BODY_MM: f32 = 2.9;
@@ -25,19 +26,31 @@ const LINE_MM: f32 = 4.1;
 /// Text and lines of the lists.
 const LIST_MM: f32 = 2.6;
 const LIST_LINE_MM: f32 = 3.7;
-/// Width of each of the two columns of gear; the checks have the rest.
+/// Width of each of the two columns of gear beside the checks, which have the rest.
 const GEAR_MM: f32 = 54.0;
+/// Height of the heading of a list.
+const LIST_HEAD_MM: f32 = HEADING_MM + 1.5;
+/// Heights of the heading of a view, and of ruler and notes under it.
+const VIEW_HEAD_MM: f32 = 3.8;
+const UNDER_VIEWS_MM: f32 = 10.0;
+/// Most by which the plan, in which the lights are placed, is larger than the elevation.
+const PLAN_OVER_ELEVATION: f32 = 1.6;
 /// Height of a row of the table with its smaller line, and without it.
 const ROW_MM: [f32; 2] = [8.0, 4.2];
 /// Height of the views, at least and at most.
-const VIEWS_MM: [f32; 2] = [62.0, 130.0];
+const VIEWS_MM: [f32; 2] = [62.0, 160.0];
 /// Gap between parts of the page.
 const GAP_MM: f32 = 4.0;
 /// Denominators of the scale.
-const SCALES: [f32; 22] = [
-    2.0, 5.0, 10.0, 15.0, 20.0, 25.0, 30.0, 40.0, 50.0, 60.0, 75.0, 100.0, 125.0, 150.0, 200.0, 250.0, 300.0, 400.0,
-    500.0, 1000.0, 2000.0, 5000.0,
+const SCALES: [f32; 23] = [
+    2.0, 5.0, 10.0, 15.0, 20.0, 25.0, 30.0, 40.0, 50.0, 60.0, 75.0, 80.0, 100.0, 125.0, 150.0, 200.0, 250.0, 300.0,
+    400.0, 500.0, 1000.0, 2000.0, 5000.0,
 ];
+
+/// Lowest line of lists.
+const BOTTOM_MM: f32 = PAGE_MM.y - MARGIN_MM - SMALL_MM;
+/// Heading of the checks.
+const CHECKS: &str = "Check on the set";
 
 const GREY: [u8; 3] = [110; 3];
 const RULE: [u8; 3] = [200; 3];
@@ -52,6 +65,20 @@ fn scale_of(sizes_m: &[Vec2], room_mm: Vec2) -> f32 {
     SCALES.into_iter().find(|scale| *scale >= least).unwrap_or(least)
 }
 
+/// Returns the denominators of the scales of plan and elevation, beside each other, that fit a width and height in
+/// millimetres: the plan's is the largest, and the elevation's not much smaller.
+fn scales_of(sizes_m: [Vec2; 2], room_mm: Vec2) -> [f32; 2] {
+    let elevation_of = |plan: f32| {
+        let plan_mm = 1000.0 / plan * sizes_m[0];
+        let left = room_mm.x - GAP_MM - plan_mm.x;
+        let fits = plan_mm.y <= room_mm.y && left > GAP_MM;
+        let elevation = scale_of(&sizes_m[1..], vec2(left.max(GAP_MM), room_mm.y)).max(plan);
+        (fits && elevation <= PLAN_OVER_ELEVATION * plan).then_some([plan, elevation])
+    };
+    let both = scale_of(&sizes_m, room_mm);
+    SCALES.into_iter().find_map(elevation_of).unwrap_or([both; 2])
+}
+
 /// A page that is filled from the top.
 struct Page<'a> {
     content: &'a SheetContent,
@@ -59,32 +86,66 @@ struct Page<'a> {
     elements: Vec<Element>,
 }
 
+/// The heights of the parts of a page under the facts.
+struct Layout {
+    /// Height of a row of the table.
+    row: f32,
+    /// Denominators of the scales of plan and elevation.
+    scales: [f32; 2],
+    /// Sizes of plan and elevation on the page.
+    views_mm: [Vec2; 2],
+    /// The list of gear, in columns of a width.
+    gear: Vec<String>,
+    gear_columns: (usize, f32),
+    /// The list of checks, over the elevation or beside the gear.
+    checks: Vec<String>,
+    are_checks_over_elevation: bool,
+}
+
 /// Lays a sheet out on a page.
 pub fn page(content: &SheetContent, font: &Font) -> Drawing {
     let mut page = Page { content, font, elements: Vec::new() };
     let top = page.head();
     let top = page.picture_and_facts(top);
-    let gear = page.gear_lines(GEAR_MM - 2.0);
-    let checks = page.check_lines(WIDTH_MM - 2.0 * GEAR_MM);
-    let gear_rows = gear.len().div_ceil(2);
-    let bottom = PAGE_MM.y - MARGIN_MM - SMALL_MM;
-    let lists = HEADING_MM + 1.5 + LIST_LINE_MM * gear_rows.max(checks.len()) as f32;
-    let lights = content.lights.len() as f32;
-    // What is left for the views decides whether the rows have their smaller line
-    let left = |row: f32| bottom - top - lists - (LINE_MM + 3.0 + row * lights) - 3.0 * GAP_MM - 6.0;
-    let row = ROW_MM.into_iter().find(|row| left(*row) >= VIEWS_MM[0]).unwrap_or(ROW_MM[1]);
-    let height = left(row).clamp(VIEWS_MM[0], VIEWS_MM[1]);
-    let top = page.views(top, height);
+    let layout = Some(page.layout(top, true)).filter(Layout::has_room_for_checks);
+    let layout = layout.unwrap_or_else(|| page.layout(top, false));
+    let bottom = BOTTOM_MM;
+    let top = page.views(top, &layout);
     // Long lists are cut at the end of the page
-    let rows = ((bottom - top - LINE_MM - 3.0 - GAP_MM - 4.0 * LIST_LINE_MM) / row).max(1.0) as usize;
-    let top = page.lights(top, row, rows);
-    let lines = ((bottom - top - HEADING_MM - 1.5) / LIST_LINE_MM).max(0.0) as usize;
-    let (first, second) = gear.split_at(gear_rows.min(lines.max(1)).min(gear.len()));
-    page.list(vec2(MARGIN_MM, top), "Bring", first, lines);
-    page.list(vec2(MARGIN_MM + GEAR_MM, top), "", second, lines);
-    page.list(vec2(MARGIN_MM + 2.0 * GEAR_MM, top), "Check on the set", &checks, lines);
+    let rows = ((bottom - top - LINE_MM - 3.0 - GAP_MM - 4.0 * LIST_LINE_MM) / layout.row).max(1.0) as usize;
+    let top = page.lights(top, layout.row, rows);
+    let lines = ((bottom - top - LIST_HEAD_MM) / LIST_LINE_MM).max(0.0) as usize;
+    let (columns, width) = layout.gear_columns;
+    let each = layout.gear.len().div_ceil(columns).clamp(1, lines.max(1));
+    for column in 0..columns {
+        // The last column has what is left
+        let from = (column * each).min(layout.gear.len());
+        let to = if column + 1 == columns { layout.gear.len() } else { (from + each).min(layout.gear.len()) };
+        let heading = if column == 0 { "Bring" } else { "" };
+        page.list(vec2(MARGIN_MM + width * column as f32, top), heading, &layout.gear[from..to], lines);
+    }
+    if !layout.are_checks_over_elevation {
+        page.list(vec2(MARGIN_MM + width * columns as f32, top), CHECKS, &layout.checks, lines);
+    }
     page.foot();
     Drawing { size_mm: PAGE_MM, elements: page.elements }
+}
+
+impl Layout {
+    /// Returns the height of the taller view.
+    fn tall(&self) -> f32 {
+        self.views_mm[0].y.max(self.views_mm[1].y)
+    }
+
+    /// Returns the x at which the column of the elevation begins.
+    fn elevation_left(&self) -> f32 {
+        MARGIN_MM + WIDTH_MM - self.views_mm[1].x
+    }
+
+    fn has_room_for_checks(&self) -> bool {
+        let free = self.tall() - self.views_mm[1].y - GAP_MM;
+        free >= LIST_HEAD_MM + LIST_LINE_MM * self.checks.len() as f32
+    }
 }
 
 impl Page<'_> {
@@ -121,47 +182,81 @@ impl Page<'_> {
         let pixels = vec2(self.content.picture.width as f32, self.content.picture.height as f32).max(Vec2::ONE);
         let size = pixels * (PICTURE_MM / pixels).min_element();
         self.elements.push(Element::Picture { at: vec2(MARGIN_MM, top), size });
-        let left = MARGIN_MM + size.x + 7.0;
-        let width = PAGE_MM.x - MARGIN_MM - left - NAMES_MM;
-        let mut y = top + 0.8 * BODY_MM;
+        let left = MARGIN_MM + size.x + 6.0;
+        let column = 0.5 * (PAGE_MM.x - MARGIN_MM - left);
         let content = self.content;
-        for (heading, facts) in [("Camera", &content.camera), ("Subject", &content.subject)] {
-            self.elements.push(Element::text(vec2(left, y), heading, HEADING_MM).strong().into());
-            y += LINE_MM + 1.0;
-            for (name, value) in facts {
-                self.grey(vec2(left, y), name, BODY_MM);
-                for line in self.font.lines(value, BODY_MM, width) {
-                    self.text(vec2(left + NAMES_MM, y), &line, BODY_MM);
-                    y += LINE_MM;
-                }
-            }
-            y += 2.6;
-        }
-        (top + size.y).max(y - LINE_MM) + GAP_MM
+        let camera = self.facts(vec2(left, top), column - 3.0, "Camera", &content.camera);
+        let subject = self.facts(vec2(left + column, top), column, "Subject", &content.subject);
+        (top + size.y).max(camera).max(subject) + GAP_MM
     }
 
-    /// Draws plan and elevation to one scale, with a ruler; returns the y below.
-    fn views(&mut self, top: f32, height: f32) -> f32 {
-        let views = &self.content.views;
-        let sizes = [views[0].size_m(), views[1].size_m()];
-        let scale = scale_of(&sizes, vec2(WIDTH_MM, height));
-        let mm_per_m = 1000.0 / scale;
-        let shown = sizes.map(|size| size * mm_per_m);
-        let tall = shown[0].y.max(shown[1].y);
-        let right = MARGIN_MM + WIDTH_MM - shown[1].x;
-        // Floors of elevations and the camera's end of plans are down
-        let places = [vec2(MARGIN_MM, top), vec2(right, top + tall - shown[1].y)];
-        for (view, at) in views.iter().zip(places) {
-            self.elements.extend(view.elements(at, mm_per_m, self.font, self.content.units));
+    /// Draws facts under a heading in a column of a width; returns the y below.
+    fn facts(&mut self, at: Vec2, width: f32, heading: &str, facts: &[(&'static str, String)]) -> f32 {
+        let mut y = at.y + 0.8 * BODY_MM;
+        self.elements.push(Element::text(vec2(at.x, y), heading, HEADING_MM).strong().into());
+        y += LINE_MM + 1.0;
+        for (name, value) in facts {
+            self.grey(vec2(at.x, y), name, BODY_MM);
+            for line in self.font.lines(value, BODY_MM, width - NAMES_MM) {
+                self.text(vec2(at.x + NAMES_MM, y), &line, BODY_MM);
+                y += LINE_MM;
+            }
         }
-        let y = top + tall + 1.6;
-        let note = format!("    Plan, scale 1:{scale:.0} on A4");
-        self.elements.extend(ruler(vec2(MARGIN_MM, y), mm_per_m, self.content.units, &note));
-        let y = y + 1.6;
-        let caption = "From the camera's right, same scale";
-        let align = Element::text(vec2(MARGIN_MM + WIDTH_MM, y), caption, SMALL_MM).colored(GREY).aligned(Align::Right);
-        self.elements.push(align.into());
-        y + GAP_MM
+        y - LINE_MM
+    }
+
+    /// Returns the layout under the facts, whose checks are over the elevation or beside the gear.
+    fn layout(&self, top: f32, are_checks_over_elevation: bool) -> Layout {
+        let (columns, width) = if are_checks_over_elevation { (3, WIDTH_MM / 3.0) } else { (2, GEAR_MM) };
+        let gear = self.gear_lines(width - 2.0);
+        let beside = self.check_lines(WIDTH_MM - 2.0 * GEAR_MM);
+        let checks = if are_checks_over_elevation { 0 } else { beside.len() };
+        let lists = LIST_HEAD_MM + LIST_LINE_MM * gear.len().div_ceil(columns).max(checks) as f32;
+        let lights = self.content.lights.len() as f32;
+        let around_views = VIEW_HEAD_MM + UNDER_VIEWS_MM + 2.0 * GAP_MM;
+        // What is left for the views decides whether the rows have their smaller line
+        let left = |row: f32| BOTTOM_MM - top - lists - (LINE_MM + 3.0 + row * lights) - around_views;
+        let row = ROW_MM.into_iter().find(|row| left(*row) >= VIEWS_MM[0]).unwrap_or(ROW_MM[1]);
+        let height = left(row).clamp(VIEWS_MM[0], VIEWS_MM[1]);
+        let sizes = [0, 1].map(|view| self.content.views[view].size_m());
+        let scales = scales_of(sizes, vec2(WIDTH_MM, height));
+        let views_mm = [0, 1].map(|view| sizes[view] * (1000.0 / scales[view]));
+        let mut layout = Layout {
+            row,
+            scales,
+            views_mm,
+            gear,
+            gear_columns: (columns, width),
+            checks: beside,
+            are_checks_over_elevation,
+        };
+        if are_checks_over_elevation {
+            layout.checks = self.check_lines(MARGIN_MM + WIDTH_MM - layout.elevation_left());
+        }
+        layout
+    }
+
+    /// Draws plan and elevation with their rulers, and the checks over the elevation; returns the y below.
+    fn views(&mut self, top: f32, layout: &Layout) -> f32 {
+        if layout.are_checks_over_elevation {
+            self.list(vec2(layout.elevation_left(), top), CHECKS, &layout.checks, layout.checks.len());
+        }
+        let names = ["Plan", "From the camera's right"];
+        let lefts = [MARGIN_MM, MARGIN_MM + WIDTH_MM - layout.views_mm[1].x];
+        // Floors of elevations and the camera's end of plans are down
+        let bottom = top + VIEW_HEAD_MM + layout.tall();
+        for (index, (name, left)) in names.into_iter().zip(lefts).enumerate() {
+            let (scale, size) = (layout.scales[index], layout.views_mm[index]);
+            let (at, mm_per_m) = (vec2(left, bottom - size.y), 1000.0 / scale);
+            self.grey(at - Vec2::Y * 1.2, &format!("{name}, scale 1:{scale:.0} on A4"), SMALL_MM + 0.2);
+            let view = &self.content.views[index];
+            self.elements.extend(view.elements(at, mm_per_m, self.font, self.content.units));
+            self.elements.extend(ruler(vec2(left, bottom + 1.4), mm_per_m, self.content.units));
+        }
+        for (index, line) in DISTANCES.into_iter().enumerate() {
+            self.grey(vec2(MARGIN_MM, bottom + 6.4 + 2.9 * index as f32), line, SMALL_MM);
+        }
+        bottom + UNDER_VIEWS_MM + 0.5 * GAP_MM
     }
 
     /// Draws the table of lights, of at most so many rows; returns the y below.
@@ -252,13 +347,26 @@ pub fn view_drawing(content: &SheetContent, index: usize, width_mm: f32, font: &
     let mm_per_m = width_mm / view.size_m().x.max(1e-3);
     let size_mm = view.size_m() * mm_per_m;
     let mut elements = view.elements(Vec2::ZERO, mm_per_m, font, content.units);
-    elements.extend(ruler(vec2(0.3, size_mm.y + 1.5), mm_per_m, content.units, ""));
+    elements.extend(ruler(vec2(0.3, size_mm.y + 1.5), mm_per_m, content.units));
     Drawing { size_mm: size_mm + Vec2::Y * RULER_MM, elements }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_plan_has_the_largest_scale_that_leaves_the_elevation_readable() {
+        let sizes = [vec2(3.5, 4.8), vec2(4.8, 3.6)];
+        assert_eq!(scale_of(&sizes, vec2(186.0, 123.0)), 50.0);
+        assert_eq!(scales_of(sizes, vec2(186.0, 123.0)), [40.0, 60.0]);
+        // At 1:30 the elevation would be at 1:60
+        assert_eq!(scales_of([vec2(2.8, 2.7), vec2(4.8, 2.5)], vec2(186.0, 115.0)), [40.0, 50.0]);
+        assert_eq!(
+            scales_of([vec2(1e5, 1.0), vec2(1.0, 1.0)], vec2(186.0, 100.0))[0],
+            scale_of(&[vec2(1e5, 1.0), vec2(1.0, 1.0)], vec2(186.0, 100.0))
+        );
+    }
 
     #[test]
     fn the_scale_is_the_largest_usual_one_that_fits() {

@@ -1,32 +1,30 @@
 //! The studio from above and from the side, to scale.
 
-use super::drawing::{Align, Element, Rgb, Stroke};
-use super::font::Font;
-use super::lengths::Units;
+use super::drawing::Rgb;
+use super::label_places::contains;
 use super::silhouette::{convex_hull, outlines};
 use crate::scene::{Assets, CameraFrame, Light, Object, Scene, Shape, tessellate};
 use crate::setup::LightShape;
 use glam::{Mat3, Quat, Vec2, Vec3};
 use std::f32::consts::FRAC_PI_2;
 
-/// Details of outlines, metres.
+/// Details of outlines, of things without hair as a part of their longest edge and at least so many metres.
 const DETAIL_M: f32 = 0.012;
+const FINE: (f32, f32) = (1.0 / 150.0, 0.002);
 /// Space around the things of a view, metres.
-const AROUND_M: f32 = 0.35;
+const AROUND_M: f32 = 0.2;
 /// Most of a backdrop that widens a view beyond lights, camera and people, metres.
 const BACKDROP_M: f32 = 2.5;
 /// Edge from which a plane is a backdrop, not a card, metres.
 const LARGE_PLANE_M: f32 = 1.5;
-/// Sizes of text, millimetres.
-const LABEL_MM: f32 = 2.2;
-const NUMBER_MM: f32 = 2.6;
-/// Width that the name of a small thing may have, millimetres.
-const NAME_MM: f32 = 18.0;
-const BADGE_MM: f32 = 2.1;
+/// Longest edge of a thing that labels do not cover, metres.
+const SMALL_M: f32 = 0.6;
+/// Angle in a plan between the ways to the subject and to the aim from which a light's aim has a line of its own,
+/// degrees.
+const APART_DEG: f32 = 4.0;
 
-const GREY: Rgb = [120; 3];
-const WALL: Rgb = [60; 3];
-const CAMERA: Rgb = [40; 3];
+/// The colour of lights that are off, and of notes.
+pub const GREY: Rgb = [120; 3];
 
 /// The side that a view is seen from, with the camera looking up the page in a plan.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -37,50 +35,61 @@ pub enum ViewFrom {
     Side,
 }
 
+/// The points that a light is aimed at and measured to, world space, metres.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Sight {
+    /// The point that it aims at, if there is one.
+    pub aim: Option<Vec3>,
+    /// The point to which its distance is given, if there is one.
+    pub target: Option<Vec3>,
+}
+
 /// A thing with its outline in a view.
 #[derive(Clone, Debug)]
-struct Outlined {
-    name: String,
-    outlines: Vec<Vec<Vec2>>,
-    low: Vec2,
-    high: Vec2,
+pub(super) struct Outlined {
+    pub(super) name: String,
+    pub(super) outlines: Vec<Vec<Vec2>>,
+    pub(super) low: Vec2,
+    pub(super) high: Vec2,
     /// Nearness to the viewer, metres: nearer things are drawn over others.
-    nearness: f32,
-    is_person: bool,
-    is_backdrop: bool,
+    pub(super) nearness: f32,
+    pub(super) is_person: bool,
+    pub(super) is_backdrop: bool,
 }
 
 /// A light in a view.
 #[derive(Clone, Debug)]
-struct PlacedLight {
-    number: usize,
-    color: Rgb,
-    is_on: bool,
-    front: Vec<Vec2>,
-    body: Vec<Vec2>,
-    position: Vec2,
-    /// The point that it aims at, if there is one, and its distance, metres.
-    aim: Option<(Vec2, f32)>,
+pub(super) struct PlacedLight {
+    pub(super) number: usize,
+    pub(super) color: Rgb,
+    pub(super) is_on: bool,
+    pub(super) front: Vec<Vec2>,
+    pub(super) body: Vec<Vec2>,
+    pub(super) position: Vec2,
+    /// The point that it aims at, if there is one.
+    pub(super) aim: Option<Vec2>,
+    /// The point that it is measured to, if there is one, and its distance along the floor, metres.
+    pub(super) target: Option<(Vec2, f32)>,
     /// The direction from its front to its back.
-    backwards: Vec2,
-    head: Vec2,
+    pub(super) backwards: Vec2,
+    pub(super) head: Vec2,
     /// The foot of its stand.
-    foot: Vec2,
+    pub(super) foot: Vec2,
 }
 
 /// A view of a studio, in metres on the page: x to the right, y down.
 #[derive(Clone, Debug)]
 pub struct StudioView {
-    from: ViewFrom,
-    low: Vec2,
-    high: Vec2,
-    things: Vec<Outlined>,
-    lights: Vec<PlacedLight>,
-    camera: [Vec<Vec2>; 2],
-    field: [[Vec2; 2]; 4],
-    subject: Vec2,
+    pub(super) from: ViewFrom,
+    pub(super) low: Vec2,
+    pub(super) high: Vec2,
+    pub(super) things: Vec<Outlined>,
+    pub(super) lights: Vec<PlacedLight>,
+    pub(super) camera: [Vec<Vec2>; 2],
+    pub(super) field: [[Vec2; 2]; 4],
+    pub(super) subject: Vec2,
     /// Floor and ceiling, or the walls: a rectangle.
-    room: Option<[Vec2; 2]>,
+    pub(super) room: Option<[Vec2; 2]>,
 }
 
 impl ViewFrom {
@@ -108,9 +117,8 @@ fn turn_to_camera(frame: &CameraFrame) -> Mat3 {
 }
 
 impl StudioView {
-    /// Returns the view of a studio with the subject at a point, metres. `aims` are the points that the lights aim at,
-    /// where they aim at any.
-    pub fn new(scene: &Scene, assets: &Assets, subject: Vec3, aims: &[Option<Vec3>], from: ViewFrom) -> Self {
+    /// Returns the view of a studio with the subject at a point, metres. `sights` are those of the lights, in their order.
+    pub fn new(scene: &Scene, assets: &Assets, subject: Vec3, sights: &[Sight], from: ViewFrom) -> Self {
         let frame = scene.camera_frame(scene.camera.aspect());
         let turn = turn_to_camera(&frame);
         let project = |point: Vec3| from.project(turn * point);
@@ -121,8 +129,8 @@ impl StudioView {
         let lights = scene.lights.iter().enumerate();
         let lights: Vec<PlacedLight> = lights
             .filter_map(|(index, light)| {
-                let aim = aims.get(index).copied().flatten();
-                PlacedLight::new(scene, index + 1, light, aim, &project)
+                let sight = sights.get(index).copied().unwrap_or_default();
+                PlacedLight::new(scene, index + 1, light, sight, &project)
             })
             .collect();
         let camera = camera_outline(&frame).map(|points| convex_hull(points.into_iter().map(project).collect()));
@@ -161,7 +169,7 @@ impl StudioView {
         points.filter(|point| point.is_finite()).for_each(&mut take);
         let needed = [low - AROUND_M, high + AROUND_M];
         let mut take = |point: Vec2| (low, high) = (low.min(point), high.max(point));
-        self.lights.iter().filter_map(|light| light.aim).for_each(|(aim, _)| take(aim));
+        self.lights.iter().filter_map(|light| light.aim).for_each(&mut take);
         for thing in self.things.iter().filter(|thing| !thing.is_backdrop) {
             [thing.low, thing.high].into_iter().for_each(&mut take);
         }
@@ -188,90 +196,21 @@ impl StudioView {
         self.high - self.low
     }
 
-    /// Draws the view with its top left corner at a point, millimetres.
-    pub fn elements(&self, at: Vec2, mm_per_m: f32, font: &Font, units: Units) -> Vec<Element> {
-        let place = |point: Vec2| at + (point - self.low) * mm_per_m;
-        let path = |points: &[Vec2]| points.iter().map(|point| place(*point)).collect::<Vec<_>>();
-        let mut inside = Vec::new();
-        self.draw_room(&mut inside, &path);
-        self.draw_things(&mut inside, &path);
-        for [from, to] in self.field {
-            inside.push(Element::line(path(&[from, to]), Stroke::dashed([190; 3], 0.15)));
-        }
-        for light in &self.lights {
-            light.draw(&mut inside, &path, self.from);
-        }
-        inside.extend(self.camera.iter().map(|part| Element::polygon(path(part), Some(CAMERA), None)));
-        inside.push(Element::circle(place(self.subject), 0.7, Some([255; 3]), Some(Stroke::new([200, 30, 30], 0.4))));
-        let mut labels = Vec::new();
-        if self.from == ViewFrom::Above {
-            self.lights.iter().for_each(|light| light.draw_distance(&mut labels, &place, font, units));
-            self.draw_names(&mut labels, &place, font);
-        }
-        self.lights.iter().for_each(|light| light.draw_number(&mut labels, &place));
-        inside.extend(labels);
-        let size = self.size_m() * mm_per_m;
-        vec![
-            Element::Clipped { at, size, elements: inside },
-            Element::rect(at, size, None, Some(Stroke::new([200; 3], 0.2))),
-        ]
-    }
-
-    fn draw_room(&self, out: &mut Vec<Element>, path: &dyn Fn(&[Vec2]) -> Vec<Vec2>) {
-        if let Some([low, high]) = self.room {
-            let corners = [low, Vec2::new(high.x, low.y), high, Vec2::new(low.x, high.y)];
-            out.push(Element::polygon(path(&corners), Some([252, 252, 250]), Some(Stroke::new(WALL, 0.6))));
-        } else if self.from == ViewFrom::Side {
-            let floor = [Vec2::new(self.low.x, 0.0), Vec2::new(self.high.x, 0.0)];
-            out.push(Element::line(path(&floor), Stroke::new(WALL, 0.4)));
-        }
-    }
-
-    fn draw_things(&self, out: &mut Vec<Element>, path: &dyn Fn(&[Vec2]) -> Vec<Vec2>) {
-        for thing in &self.things {
-            let (fill, line) = match (thing.is_person, thing.is_backdrop) {
-                (true, _) => ([222, 203, 188], [120, 92, 72]),
-                (_, true) => ([238, 238, 236], [150; 3]),
-                _ => ([218, 220, 222], [130; 3]),
-            };
-            let lines = thing.outlines.iter().map(|outline| path(outline)).collect();
-            let stroke = Some(Stroke::new(line, 0.2));
-            out.push(Element::Path { lines, closed: true, fill: Some(fill), stroke });
-        }
-    }
-
-    /// Draws the names of what is large enough for them, unless they would lie over other names: people's first, then
-    /// those of the largest things.
-    fn draw_names(&self, out: &mut Vec<Element>, place: &dyn Fn(Vec2) -> Vec2, font: &Font) {
-        let mut things: Vec<&Outlined> = self.things.iter().collect();
-        let area = |thing: &Outlined| (thing.high - thing.low).element_product();
-        things.sort_by(|a, b| b.is_person.cmp(&a.is_person).then(area(b).total_cmp(&area(a))));
-        let mut taken: Vec<[Vec2; 2]> = Vec::new();
-        for thing in things {
-            let (low, high) = (place(thing.low.max(self.low)), place(thing.high.min(self.high)));
-            let width = if thing.is_backdrop { high.x - low.x - 2.0 } else { (high.x - low.x).max(NAME_MM) };
-            let text = font.fitted(&thing.name, LABEL_MM, width);
-            if text.is_empty() || (high - low).max_element() < LABEL_MM {
-                continue;
-            }
-            let at = match thing.is_backdrop {
-                true => low + Vec2::new(1.2, LABEL_MM + 0.6),
-                false => Vec2::new(0.5 * (low.x + high.x), high.y + LABEL_MM),
-            };
-            let align = if thing.is_backdrop { Align::Left } else { Align::Center };
-            let width = font.width(&text, LABEL_MM);
-            let left = if thing.is_backdrop { at.x } else { at.x - 0.5 * width };
-            let area = [Vec2::new(left, at.y - LABEL_MM), Vec2::new(left + width, at.y + 0.3 * LABEL_MM)];
-            if taken.iter().any(|other| area[0].cmplt(other[1]).all() && other[0].cmplt(area[1]).all()) {
-                continue;
-            }
-            taken.push(area);
-            out.push(Element::text(at, text, LABEL_MM).colored([90; 3]).aligned(align).into());
-        }
+    /// Returns true for a light between the viewer and the subject, a person or a small thing: it is drawn as an outline.
+    pub(super) fn is_before(&self, light: &PlacedLight) -> bool {
+        let body = std::slice::from_ref(&light.body);
+        let mut people = self.things.iter().filter(|thing| thing.is_person || thing.is_small());
+        contains(body, self.subject)
+            || people.any(|thing| thing.outlines.iter().flatten().any(|point| contains(body, *point)))
     }
 }
 
 impl Outlined {
+    /// Returns true for a prop that is small enough to be hidden by a label.
+    pub(super) fn is_small(&self) -> bool {
+        !self.is_person && !self.is_backdrop && (self.high - self.low).max_element() < SMALL_M
+    }
+
     fn new(object: &Object, assets: &Assets, from: ViewFrom, turn: Mat3) -> Option<Self> {
         let mesh = match &object.shape {
             Shape::MeshFile { .. } | Shape::Figure(_) | Shape::Tank(_) => assets.coarse_mesh_of(&object.shape)?,
@@ -283,7 +222,10 @@ impl Outlined {
         let triangles = (0..mesh.triangles.len()).map(|index| mesh.corners(index).map(|corner| project(&corner)));
         let triangles: Vec<[Vec2; 3]> = triangles.collect();
         let strands: Vec<Vec2> = mesh.strands.points().iter().map(|point| project(&point.position)).collect();
-        let mut outlines = outlines(&triangles, &strands, DETAIL_M);
+        let corners = || triangles.iter().flatten().filter(|corner| corner.is_finite()).copied();
+        let size = corners().reduce(Vec2::max).zip(corners().reduce(Vec2::min)).map_or(Vec2::ZERO, |(a, b)| a - b);
+        let fine = (FINE.0 * size.max_element()).clamp(FINE.1, DETAIL_M);
+        let mut outlines = outlines(&triangles, &strands, if strands.is_empty() { fine } else { DETAIL_M });
         if outlines.is_empty() {
             // A small thing
             outlines.push(convex_hull(triangles.into_iter().flatten().collect()));
@@ -306,13 +248,7 @@ impl Outlined {
 }
 
 impl PlacedLight {
-    fn new(
-        scene: &Scene,
-        number: usize,
-        light: &Light,
-        aim: Option<Vec3>,
-        project: &dyn Fn(Vec3) -> Vec2,
-    ) -> Option<Self> {
+    fn new(scene: &Scene, number: usize, light: &Light, sight: Sight, project: &dyn Fn(Vec3) -> Vec2) -> Option<Self> {
         let shape = LightShape::new(scene, light)?;
         let position = project(light.position);
         Some(PlacedLight {
@@ -322,81 +258,31 @@ impl PlacedLight {
             front: convex_hull(shape.front.iter().map(|point| project(*point)).collect()),
             body: convex_hull(shape.points().map(project).collect()),
             position,
-            aim: aim.map(|aim| (project(aim), (aim - light.position).length())),
+            aim: sight.aim.map(project),
+            target: sight.target.map(|target| (project(target), (target - light.position).with_y(0.0).length())),
             backwards: project(light.position - shape.axis) - position,
             head: project(shape.head),
             foot: project(Vec3::new(shape.head.x, 0.0, shape.head.z)),
         })
     }
 
-    fn draw(&self, out: &mut Vec<Element>, path: &dyn Fn(&[Vec2]) -> Vec<Vec2>, from: ViewFrom) {
-        let color = if self.is_on { self.color } else { GREY };
-        if from == ViewFrom::Side {
-            out.push(Element::line(path(&[self.foot, self.head]), Stroke::new([150; 3], 0.3)));
-        }
-        if let Some((aim, _)) = self.aim {
-            out.push(Element::line(path(&[self.position, aim]), Stroke::dashed(color, 0.25)));
-        }
-        let pale = color.map(|channel| 255 - (255 - channel) / 3);
-        out.push(Element::polygon(path(&self.body), Some(pale), Some(Stroke::new(color, 0.25))));
-        out.push(Element::polygon(path(&self.front), Some([255; 3]), Some(Stroke::new(color, 0.6))));
+    /// Returns its colour, grey if it is off.
+    pub(super) fn shown_color(&self) -> Rgb {
+        if self.is_on { self.color } else { GREY }
     }
 
-    fn draw_distance(&self, out: &mut Vec<Element>, place: &dyn Fn(Vec2) -> Vec2, font: &Font, units: Units) {
-        let Some((aim, distance_m)) = self.aim else { return };
-        let (from, to) = (place(self.position), place(aim));
-        let text = units.distance(distance_m);
-        let width = font.width(&text, LABEL_MM);
-        if (to - from).length() < width + 4.0 {
-            return;
-        }
-        let middle = from.lerp(to, 0.45);
-        let half = Vec2::new(0.5 * width + 0.4, 0.5 * LABEL_MM + 0.2);
-        out.push(Element::rect(middle - half, 2.0 * half, Some([255; 3]), None));
-        let base = middle + Vec2::Y * 0.36 * LABEL_MM;
-        out.push(Element::text(base, text, LABEL_MM).colored(self.color).aligned(Align::Center).into());
+    /// Returns the lines from its front to what it is measured to, in a plan, and to its aim where that is elsewhere;
+    /// the second lines are true for the aim.
+    pub(super) fn sight_lines(&self, from: ViewFrom) -> impl Iterator<Item = ([Vec2; 2], bool)> {
+        let target = self.target.map(|(target, _)| target).filter(|_| from == ViewFrom::Above);
+        let way = |to: Vec2| (to - self.position).normalize_or_zero();
+        let is_apart =
+            |aim: &Vec2| target.is_none_or(|target| way(target).angle_to(way(*aim)).abs() > APART_DEG.to_radians());
+        let aim = self.aim.filter(is_apart);
+        let position = self.position;
+        let lines = [target.map(|to| (to, false)), aim.map(|to| (to, true))];
+        lines.into_iter().flatten().map(move |(to, is_aim)| ([position, to], is_aim))
     }
-
-    fn draw_number(&self, out: &mut Vec<Element>, place: &dyn Fn(Vec2) -> Vec2) {
-        let behind = self.backwards.normalize_or(Vec2::NEG_Y);
-        let middle = place(self.head) + behind * (BADGE_MM + 0.6);
-        out.extend(badge(middle, self.number, if self.is_on { self.color } else { GREY }));
-    }
-}
-
-/// Draws a ruler of whole units, of 20 to 60 mm where one is not too long, with its length and a note at its end.
-pub fn ruler(at: Vec2, mm_per_m: f32, units: Units, note: &str) -> Vec<Element> {
-    let (unit_m, unit) = units.ruler();
-    let step = mm_per_m * unit_m;
-    let (parts, each) = match step > 60.0 {
-        // A part of a unit
-        true => (1, 0.1 * (600.0 / step).floor().max(1.0)),
-        false => {
-            let count = (60.0 / step.max(1e-3)).floor();
-            let each = (count / 6.0).ceil();
-            ((count / each) as u32, each)
-        }
-    };
-    let (part_mm, total) = (step * each, each * parts as f32);
-    let mut elements = Vec::new();
-    for index in 0..parts {
-        let fill = if index % 2 == 0 { [40; 3] } else { [255; 3] };
-        let from = at + Vec2::X * part_mm * index as f32;
-        let stroke = Some(Stroke::new([40; 3], 0.15));
-        elements.push(Element::rect(from, Vec2::new(part_mm, 1.2), Some(fill), stroke));
-    }
-    let decimals = usize::from(total.fract() != 0.0);
-    let text = format!("{total:.decimals$} {unit}{note}");
-    let end = at + Vec2::new(part_mm * parts as f32 + 1.5, 1.6);
-    elements.push(Element::text(end, text, LABEL_MM).colored(GREY).into());
-    elements
-}
-
-/// Draws the number of a light.
-pub fn badge(middle: Vec2, number: usize, color: Rgb) -> [Element; 2] {
-    let base = middle + Vec2::Y * 0.36 * NUMBER_MM;
-    let number = Element::text(base, number.to_string(), NUMBER_MM).colored([255; 3]).aligned(Align::Center).strong();
-    [Element::circle(middle, BADGE_MM, Some(color), None), number.into()]
 }
 
 /// Returns the colour of a light's role, dark enough for paper.
