@@ -104,6 +104,27 @@ pub const HAIR_COLORS: [MaterialPreset; 7] = [
     MaterialPreset::HairWhite,
 ];
 
+/// A colour of cloth. The values are typical.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ClothColor {
+    /// Its name.
+    pub label: &'static str,
+    /// Reflectance, scene-linear Rec.709.
+    pub base_color: [f32; 3],
+}
+
+/// Colours of clothes and shoes.
+pub const CLOTH_COLORS: [ClothColor; 8] = [
+    ClothColor { label: "White", base_color: [0.75, 0.75, 0.73] },
+    ClothColor { label: "Sand", base_color: [0.5, 0.42, 0.31] },
+    ClothColor { label: "Grey", base_color: [0.2, 0.2, 0.2] },
+    ClothColor { label: "Grey blue", base_color: [0.16, 0.2, 0.26] },
+    ClothColor { label: "Red", base_color: [0.35, 0.035, 0.03] },
+    ClothColor { label: "Green", base_color: [0.05, 0.12, 0.06] },
+    ClothColor { label: "Navy", base_color: [0.035, 0.045, 0.07] },
+    ClothColor { label: "Black", base_color: [0.02, 0.02, 0.02] },
+];
+
 /// Colour of lips as a factor of the skin's: less melanin, and more blood near the surface. Typical, not measured.
 pub(super) const LIP_TINT: [f32; 3] = [0.86, 0.56, 0.6];
 
@@ -152,6 +173,15 @@ pub fn give_eyes(object: &mut Object, color: &EyeColor) {
 /// Gives a figure hair, a beard and brows of one colour.
 pub fn give_hair(object: &mut Object, color: MaterialPreset) {
     give_parts(object, &PARTS_OF_HAIR, &color.material());
+}
+
+/// Gives a garment or the shoes of a figure a colour; the cloth stays as it is.
+pub fn give_cloth_color(object: &mut Object, garment: &str, base_color: [f32; 3]) {
+    let material = match object.part_materials.iter().find(|(part, _)| part == garment) {
+        Some((_, own)) => own.clone(),
+        None => MaterialPreset::MatteFabric.material(),
+    };
+    give_parts(object, &[garment], &Material { base_color, ..material });
 }
 
 fn give_parts(object: &mut Object, names: &[&str], material: &Material) {

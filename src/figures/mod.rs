@@ -48,8 +48,8 @@ pub use gaze::{as_variant, follow_gazes, gaze_falls_short, show_variant};
 pub use joints::{Joint, PosableBody};
 pub use makehuman::read_body;
 pub use materials::{
-    EYE_COLORS, EyeColor, HAIR_COLORS, SKIN_TONES, SkinTone, default_parts, give_eyes, give_hair, give_skin,
-    iris_textures,
+    CLOTH_COLORS, ClothColor, EYE_COLORS, EyeColor, HAIR_COLORS, SKIN_TONES, SkinTone, default_parts, give_cloth_color,
+    give_eyes, give_hair, give_skin, iris_textures,
 };
 pub use named_poses::{NamedExpression, NamedPose};
 pub use ready::{READY, ReadyFigure, randomised};

@@ -2,7 +2,7 @@
 
 use super::*;
 use catchlight::figures;
-use catchlight::scene::MaterialPreset;
+use catchlight::scene::{Material, MaterialPreset};
 
 #[test]
 fn a_slider_drag_is_one_undo_step_and_the_next_one_another() {
@@ -118,6 +118,26 @@ fn eyes_and_hair_of_a_figure_take_the_colour_of_a_square_at_a_click() {
         click(&mut window, square);
         let object = scene(&window).objects.last().unwrap();
         assert!(parts.into_iter().all(|part| *object.material_of(part) == material), "{square}");
+        press(&mut window, Modifiers::COMMAND, Key::Z);
+        assert_eq!(scene(&window).objects.last().unwrap(), &before, "one step of undo");
+    }
+}
+
+#[test]
+fn clothes_of_a_figure_take_a_colour_at_a_click_and_keep_their_cloth() {
+    let Some(mut window) = preset_window() else { return };
+    click(&mut window, "Figures");
+    click(&mut window, "Add Woman, 34, long hair");
+    let before = scene(&window).objects.last().unwrap().clone();
+    for (square, part, index) in [("Top colour: Red", "top", 4), ("Shoe colour: White", "shoes", 0)] {
+        window.get_by_label(square).scroll_to_me();
+        settle(&mut window);
+        click(&mut window, square);
+        let object = scene(&window).objects.last().unwrap().clone();
+        let expected =
+            Material { base_color: figures::CLOTH_COLORS[index].base_color, ..before.material_of(part).clone() };
+        assert_eq!(*object.material_of(part), expected, "{square}");
+        assert_eq!(object.material_of("bottom"), before.material_of("bottom"), "the other garments keep theirs");
         press(&mut window, Modifiers::COMMAND, Key::Z);
         assert_eq!(scene(&window).objects.last().unwrap(), &before, "one step of undo");
     }

@@ -3,8 +3,10 @@
 use crate::editor::commands::command::Command;
 use crate::editor::commands::item_menu::{FACE_TIP, FRAMING_TIP};
 use crate::editor::document::framing::Framing;
-use crate::editor::ui::widgets::{row, section, swatch};
-use crate::figures::{self, EYE_COLORS, EyeColor, HAIR_COLORS, NamedExpression, NamedPose, SKIN_TONES, SkinTone};
+use crate::editor::ui::widgets::{self, row, section, swatch};
+use crate::figures::{
+    self, CLOTH_COLORS, ClothColor, EYE_COLORS, EyeColor, HAIR_COLORS, NamedExpression, NamedPose, SKIN_TONES, SkinTone,
+};
 use crate::jobs::{Catchlight, Face, sentence};
 use crate::scene::{
     Arm, Beard, Body, Bottom, Figure, Gaze, HairStyle, Leg, MaterialPreset, Object, ObjectId, Parameter, ParameterSet,
@@ -79,6 +81,7 @@ pub(super) fn framing_rows(ui: &mut Ui, id: ObjectId, out: &mut Vec<Command>) {
 /// Draws the sections of an object that is a figure; returns true if a stool under it is wanted.
 pub(super) fn figure_ui(ui: &mut Ui, scene: &Scene, object: &mut Object) -> bool {
     section(ui, "Person", true, |ui| person_rows(ui, object));
+    section(ui, "Clothes and hair", true, |ui| clothes_rows(ui, object));
     let falls_short = figures::gaze_falls_short(scene, object);
     let Shape::Figure(figure) = &mut object.shape else { return false };
     let mut wants_stool = false;
@@ -94,7 +97,6 @@ pub(super) fn figure_ui(ui: &mut Ui, scene: &Scene, object: &mut Object) -> bool
         gaze_row(ui, scene, &mut figure.gaze, falls_short);
         wants_stool = pose_rows(ui, figure);
     });
-    section(ui, "Clothes and hair", false, |ui| clothes_rows(ui, figure));
     wants_stool
 }
 
@@ -128,19 +130,10 @@ fn person_rows(ui: &mut Ui, object: &mut Object) {
     if let Some(color) = color_choice(ui, "Eyes", tip, EYE_COLORS, look) {
         figures::give_eyes(object, &color);
     }
-    let tip = "Of hair, beard and brows. Each of them has a colour of its own below, dyes as well";
-    let look = |color: &MaterialPreset| {
-        let (name, material) = (color.label(), color.material());
-        let is_worn = *object.material_of("hair") == material;
-        (name.strip_prefix("Hair, ").unwrap_or(name), material.base_color, is_worn)
-    };
-    if let Some(color) = color_choice(ui, "Hair colour", tip, HAIR_COLORS, look) {
-        figures::give_hair(object, color);
-    }
 }
 
-/// Draws a row of coloured squares, and returns the choice whose square is clicked. `look` returns the name and the
-/// reflectance of a choice, and whether the figure has it now: a frame round the square shows that.
+/// Draws a row of coloured squares, and returns the choice whose square is clicked. `look` is that of
+/// [`color_squares`].
 fn color_choice<C>(
     ui: &mut Ui,
     label: &str,
@@ -148,22 +141,31 @@ fn color_choice<C>(
     choices: impl IntoIterator<Item = C>,
     look: impl Fn(&C) -> (&'static str, [f32; 3], bool),
 ) -> Option<C> {
+    row(ui, label, tip, |ui| color_squares(ui, label, choices, look))
+}
+
+/// Draws coloured squares, and returns the choice whose square is clicked. `look` returns the name and the reflectance
+/// of a choice, and whether the figure has it now: a frame round the square shows that.
+fn color_squares<C>(
+    ui: &mut Ui,
+    label: &str,
+    choices: impl IntoIterator<Item = C>,
+    look: impl Fn(&C) -> (&'static str, [f32; 3], bool),
+) -> Option<C> {
     let mut clicked = None;
-    row(ui, label, tip, |ui| {
-        for choice in choices {
-            let (name, color, is_current) = look(&choice);
-            let square = swatch(ui, shown(color), vec2(20.0, 20.0)).interact(Sense::click()).on_hover_text(name);
-            // Named for screen readers, and for tests
-            square.widget_info(|| WidgetInfo::selected(Role::Button, true, is_current, format!("{label}: {name}")));
-            if is_current {
-                let stroke = ui.visuals().widgets.active.fg_stroke;
-                ui.painter().rect_stroke(square.rect, CornerRadius::same(3), stroke, StrokeKind::Outside);
-            }
-            if square.clicked() {
-                clicked = Some(choice);
-            }
+    for choice in choices {
+        let (name, color, is_current) = look(&choice);
+        let square = swatch(ui, shown(color), vec2(20.0, 20.0)).interact(Sense::click()).on_hover_text(name);
+        // Named for screen readers, and for tests
+        square.widget_info(|| WidgetInfo::selected(Role::Button, true, is_current, format!("{label}: {name}")));
+        if is_current {
+            let stroke = ui.visuals().widgets.active.fg_stroke;
+            ui.painter().rect_stroke(square.rect, CornerRadius::same(3), stroke, StrokeKind::Outside);
         }
-    });
+        if square.clicked() {
+            clicked = Some(choice);
+        }
+    }
     clicked
 }
 
@@ -216,8 +218,10 @@ fn pose_rows(ui: &mut Ui, figure: &mut Figure) -> bool {
     wants_stool
 }
 
-fn clothes_rows(ui: &mut Ui, figure: &mut Figure) {
-    row(ui, "Top", "Colours are those of its parts, below", |ui| {
+/// Draws the garments and their colours, and the hair and its colour.
+fn clothes_rows(ui: &mut Ui, object: &mut Object) {
+    let Shape::Figure(figure) = &mut object.shape else { return };
+    row(ui, "Top", "", |ui| {
         picker(ui, "top", Top::ALL.into_iter().map(|top| (top.label(), top)), &mut figure.top);
     });
     row(ui, "Below", "", |ui| {
@@ -229,6 +233,36 @@ fn clothes_rows(ui: &mut Ui, figure: &mut Figure) {
     row(ui, "Beard", "", |ui| {
         picker(ui, "beard", Beard::ALL.into_iter().map(|beard| (beard.label(), beard)), &mut figure.beard);
     });
+    for (part, label) in [("top", "Top colour"), ("bottom", "Below colour"), ("shoes", "Shoe colour")] {
+        cloth_color_row(ui, object, part, label);
+    }
+    let tip = "Of hair, beard and brows. Each of them has a colour of its own below, dyes as well";
+    let look = |color: &MaterialPreset| {
+        let (name, material) = (color.label(), color.material());
+        let is_worn = *object.material_of("hair") == material;
+        (name.strip_prefix("Hair, ").unwrap_or(name), material.base_color, is_worn)
+    };
+    if let Some(color) = color_choice(ui, "Hair colour", tip, HAIR_COLORS, look) {
+        figures::give_hair(object, color);
+    }
+}
+
+/// Draws the colours of a garment or of the shoes, and a button for any other one.
+fn cloth_color_row(ui: &mut Ui, object: &mut Object, part: &str, label: &str) {
+    let before = object.material_of(part).base_color;
+    let mut color = before;
+    let tip =
+        "What the cloth reflects; the last square opens any other colour. Textures are those of its surface, below";
+    row(ui, label, tip, |ui| {
+        let look = |cloth: &ClothColor| (cloth.label, cloth.base_color, cloth.base_color == before);
+        if let Some(cloth) = color_squares(ui, label, CLOTH_COLORS, look) {
+            color = cloth.base_color;
+        }
+        widgets::color_ui(ui, &mut color).on_hover_text("Any other colour");
+    });
+    if color != before {
+        figures::give_cloth_color(object, part, color.map(|c| c.min(0.99)));
+    }
 }
 
 /// Draws a slider for each parameter of a set.
