@@ -4,7 +4,7 @@ use super::contained_file::find_in;
 use super::error::AssetError;
 use super::{atomic, importers, obj, photometric, texture};
 use crate::scene::{AssetRef, Assets, IntensityTable, Mesh, Scene, Texture, TextureRef};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs::File;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -56,6 +56,12 @@ impl<'a> AssetFiles<'a> {
         let Some(file) = self.imported.get(path) else { return find_in(path, self.folder) };
         let name = file.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
         find_in(&name, file.parent())
+    }
+
+    /// Returns the files of a scene's assets, by the scene's paths. Those that are not found are left out.
+    pub fn found(&self, scene: &Scene) -> BTreeMap<String, PathBuf> {
+        let paths: BTreeSet<String> = scene.assets().filter_map(|(_, asset)| asset.path().map(str::to_owned)).collect();
+        paths.into_iter().filter_map(|path| self.find(&path).ok().map(|file| (path, file))).collect()
     }
 
     /// Returns the copies that make every file of the scene lie where a scene file in `folder` looks for it. A file that

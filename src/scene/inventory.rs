@@ -1,6 +1,6 @@
 //! Enumerates the materials and the asset references of a scene. Nothing else in the crate lists them.
 
-use super::{AssetRef, Material, Object, Room, Scene, Shape, TextureSlot};
+use super::{AssetRef, Material, Object, Room, Scene, Shape, Tank, Terrain, TextureSlot};
 use std::borrow::Cow;
 
 /// The slot of a scene that holds one material.
@@ -112,6 +112,37 @@ impl Scene {
         }
     }
 
+    /// Renames the files of the assets of objects and lights: `new_path` returns the new path of an asset, or none to keep
+    /// it. The room's textures and the lights of other variants keep theirs.
+    pub fn rename_asset_files(&mut self, mut new_path: impl FnMut(&AssetRef<'_>) -> Option<String>) {
+        for object in &mut self.objects {
+            rename_shape_file(&mut object.shape, &mut new_path);
+            let parts = object.part_materials.iter_mut().map(|(_, material)| material);
+            for material in std::iter::once(&mut object.material).chain(parts) {
+                for slot in TextureSlot::ALL {
+                    let texture = material.textures.get_mut(slot);
+                    let new = texture.as_ref().and_then(|texture| new_path(&AssetRef::Texture(Cow::Borrowed(texture))));
+                    *texture = texture.take().map(|texture| match new {
+                        Some(path) => texture.at_path(path),
+                        None => texture,
+                    });
+                }
+            }
+        }
+        for light in &mut self.lights {
+            if let Some(path) = &mut light.photometric_file
+                && let Some(new) = new_path(&AssetRef::Photometry(Cow::Borrowed(path)))
+            {
+                *path = new;
+            }
+            if let Some(path) = &mut light.environment_map
+                && let Some(new) = new_path(&AssetRef::Environment(Cow::Borrowed(path)))
+            {
+                *path = new;
+            }
+        }
+    }
+
     fn texture_place(&self, material: MaterialSlot, field: &str) -> String {
         match material {
             MaterialSlot::Floor => format!("room.floor.{field}"),
@@ -171,10 +202,61 @@ fn shape_asset(shape: &Shape) -> Option<AssetRef<'_>> {
     }
 }
 
+/// Renames the file of a shape's asset.
+fn rename_shape_file(shape: &mut Shape, new_path: &mut impl FnMut(&AssetRef<'_>) -> Option<String>) {
+    let new = shape_asset(shape).filter(|asset| asset.path().is_some()).and_then(|asset| new_path(&asset));
+    match (shape, new) {
+        (Shape::MeshFile { path }, Some(new)) => *path = new,
+        (Shape::Tank(tank), Some(new)) => {
+            let Tank { terrain, .. } = &mut **tank;
+            if let Terrain::Picture { path, .. } = terrain {
+                *path = new;
+            }
+        }
+        _ => {}
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::scene::{Emitter, Extent, Figure, Light, MaterialTextures, Output, TextureRef};
+
+    #[test]
+    fn every_asset_file_of_objects_and_lights_is_renamed() {
+        let embedded = TextureRef::Embedded { model: "chair.glb".to_owned(), image: 2 };
+        let textures = MaterialTextures {
+            emission: Some(embedded),
+            ..MaterialTextures::with_base_color(TextureRef::file("wood.png"))
+        };
+        let material = Material { textures, ..Material::default() };
+        let ground = Terrain::Picture { path: "hills.png".to_owned(), low_m: 0.0, high_m: 0.1 };
+        let tank = Tank { terrain: ground, ..Tank::default() };
+        let chair = Object {
+            material: material.clone(),
+            part_materials: vec![("seat".to_owned(), material)],
+            ..Object::new("Chair", Shape::MeshFile { path: "chair.glb".to_owned() })
+        };
+        let mut scene = Scene {
+            objects: vec![chair, Object::new("Tank", Shape::Tank(Box::new(tank)))],
+            lights: vec![Light {
+                photometric_file: Some("lamp.ies".to_owned()),
+                environment_map: Some("sky.hdr".to_owned()),
+                ..Light::new(Emitter::Surround, Output::Lumens(100.0))
+            }],
+            ..Scene::default()
+        };
+        let paths = |scene: &Scene| -> Vec<String> {
+            scene.assets().filter_map(|(_, asset)| asset.path().map(str::to_owned)).collect()
+        };
+        let before = paths(&scene);
+        assert_eq!(before.len(), 8);
+        scene.rename_asset_files(|asset| asset.path().map(|path| format!("new/{path}")));
+        assert_eq!(paths(&scene), before.iter().map(|path| format!("new/{path}")).collect::<Vec<_>>());
+        let renamed = scene.clone();
+        scene.rename_asset_files(|_| None);
+        assert_eq!(scene, renamed);
+    }
 
     #[test]
     fn materials_and_assets_are_listed_with_the_fields_that_hold_them() {

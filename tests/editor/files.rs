@@ -103,6 +103,32 @@ fn window_with_pyramid(folder: &Path, file: &Path) -> (Window, PathBuf) {
 }
 
 #[test]
+fn a_copied_model_takes_its_file_along_into_the_studio_of_another_window() {
+    if !has_adapter() {
+        return;
+    }
+    let (desktop, home) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
+    let (mut first, _) = window_with_pyramid(desktop.path(), &desktop.path().join("first.ron"));
+    let text = copied_text(&mut first);
+    let file = home.path().join("second.ron");
+    let mut second = window_with_answers([file.clone()]);
+    second.event(Event::Paste(text.clone()));
+    settle(&mut second);
+    let path = |window: &Window| match &scene(window).objects.last().unwrap().shape {
+        Shape::MeshFile { path } => path.clone(),
+        other => panic!("{other:?}"),
+    };
+    assert!(second.state().document().assets().mesh(&path(&second)).is_some(), "{:?}", errors(&second));
+    press(&mut second, Modifiers::COMMAND, Key::S);
+    assert!(home.path().join(path(&second)).exists());
+    // In the window that it comes from it is no other model
+    let name = path(&first);
+    first.event(Event::Paste(text));
+    settle(&mut first);
+    assert_eq!(path(&first), name);
+}
+
+#[test]
 fn files_can_be_dropped_and_models_travel_with_the_studio() {
     if !has_adapter() {
         return;

@@ -345,6 +345,18 @@ fn errors(window: &Window) -> Vec<&str> {
     window.state().toasts().texts(ToastKind::Error)
 }
 
+/// Copies what is selected, and returns the text on the clipboard.
+fn copied_text(window: &mut Window) -> String {
+    window.event(Event::Copy);
+    window.step();
+    let text = window.output().platform_output.commands.iter().find_map(|command| match command {
+        egui::OutputCommand::CopyText(text) => Some(text.clone()),
+        _ => None,
+    });
+    settle(window);
+    text.unwrap_or_else(|| panic!("nothing is on the clipboard"))
+}
+
 /// Renders a picture of a few pixels.
 fn render_tiny(window: &mut Window) {
     let rendering = window.state_mut().rendering_mut();

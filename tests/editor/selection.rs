@@ -251,16 +251,7 @@ fn what_is_copied_is_pasted_into_another_studio_in_one_step() {
     let Some(mut window) = preset_window() else { return };
     let (figure, light) = (scene(&window).objects[0].clone(), scene(&window).lights[0].clone());
     select(&mut window, &[Item::Object(figure.id), Item::Light(light.id)]);
-    window.event(Event::Copy);
-    window.step();
-    let copied = |window: &Window| {
-        window.output().platform_output.commands.iter().find_map(|command| match command {
-            egui::OutputCommand::CopyText(text) => Some(text.clone()),
-            _ => None,
-        })
-    };
-    let text = copied(&window).expect("the text of both is on the clipboard");
-    settle(&mut window);
+    let text = copied_text(&mut window);
     press(&mut window, Modifiers::COMMAND, Key::N);
     click(&mut window, "Empty studio");
     window.event(Event::Paste(text));

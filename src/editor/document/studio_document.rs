@@ -9,11 +9,21 @@ use crate::editor::document::revisions::Revisions;
 use crate::figures;
 use crate::io::{self, AssetFiles, FileStamp};
 use crate::scene::{
-    AssetKey, AssetRef, Assets, Finding, ObjectId, Scene, SceneChange, Severity, Shape, Tank, VariantId, validate,
+    AssetKey, AssetRef, Assets, Finding, ObjectId, Scene, SceneChange, Severity, Shape, Tank, TextureRef, VariantId,
+    validate,
 };
 use std::borrow::Cow;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
+
+/// Folder beside a studio for imported models.
+pub const MODELS: &str = "models";
+/// Folder for imported textures.
+pub const TEXTURES: &str = "textures";
+/// Folder for imported photometric files.
+pub const LAMPS: &str = "lamps";
+/// Folder for imported environment maps.
+pub const ENVIRONMENTS: &str = "environments";
 
 /// The open studio.
 #[derive(Clone, Debug, Default)]
@@ -281,7 +291,7 @@ impl Document {
             n => format!("{kind_folder}/{stem}-{n}{ending}"),
         };
         let is_free = |name: &String| match self.imported.get(name) {
-            Some(other) => other == file,
+            Some(other) => other == file || other.canonicalize().is_ok_and(|other| other == file),
             None => {
                 let exists = self.folder().is_some_and(|folder| folder.join(name).exists());
                 !exists && !self.assets.contains_file(name)
@@ -303,6 +313,20 @@ impl Document {
         (self.saved, self.is_unsaved, self.is_changed) = (self.scene.clone(), false, false);
         self.stamp = FileStamp::of(&path).ok();
         self.path = Some(path);
+    }
+}
+
+/// Returns the folder beside a studio into which a save copies an imported file of an asset.
+pub fn import_folder(asset: &AssetRef<'_>) -> &'static str {
+    match asset {
+        AssetRef::Mesh(_) | AssetRef::Figure(_) => MODELS,
+        AssetRef::Texture(texture) => match &**texture {
+            TextureRef::Embedded { .. } => MODELS,
+            TextureRef::File(_) | TextureRef::Builtin(_) => TEXTURES,
+        },
+        AssetRef::Tank(_) => TEXTURES,
+        AssetRef::Photometry(_) => LAMPS,
+        AssetRef::Environment(_) => ENVIRONMENTS,
     }
 }
 

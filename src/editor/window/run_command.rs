@@ -7,14 +7,14 @@ use crate::editor::document::action::Action;
 use crate::editor::document::action_error::ActionError;
 use crate::editor::document::arrange::MirrorPlane;
 use crate::editor::document::catalog::CatalogItem;
-use crate::editor::document::clipboard;
+use crate::editor::document::clipboard::{self, ClipboardContent};
 use crate::editor::document::files::{self, StudioSource};
 use crate::editor::document::framing::{face_action, frame_figure};
 use crate::editor::document::item::Item;
 use crate::editor::document::light_mix::Mix;
 use crate::editor::document::placement;
 use crate::editor::document::selection::Selection;
-use crate::editor::document::studio_document::Document;
+use crate::editor::document::studio_document::{Document, import_folder};
 use crate::editor::viewport::tools::place_light::{LightPlacement, can_be_placed};
 use crate::editor::viewport::tools::place_light_drag::PlaceLightDrag;
 use crate::editor::viewport::tools::pointer_tool::PointerTool;
@@ -50,10 +50,7 @@ impl App {
                 }
             }
             Command::RequestPaste => ctx.send_viewport_cmd(ViewportCommand::RequestPaste),
-            Command::Paste(text) => match clipboard::pasted(&text) {
-                Some(from) => self.apply(Action::Paste(Box::new(from)), None),
-                None => self.toasts.info("There are no lights or things on the clipboard."),
-            },
+            Command::Paste(text) => self.paste(&text),
             Command::DuplicateSelected => {
                 let otherwise = "Select a light or a thing to duplicate.";
                 self.with_selected(|item| item.can_be_copied(), otherwise, |_, items| Action::Duplicate(items));
@@ -221,12 +218,28 @@ impl App {
     /// Puts the selected lights and things on the clipboard, and returns them; none without any.
     fn copy_selected(&mut self, ctx: &Context) -> Option<Vec<Item>> {
         let items: Vec<Item> = self.selection.items().iter().copied().filter(|item| item.can_be_copied()).collect();
-        let Some(text) = clipboard::copied_text(self.document.scene(), &items) else {
+        let Some(text) = clipboard::copied_text(self.document.scene(), &items, self.document.asset_files()) else {
             self.toasts.info("Select a light or a thing to copy.");
             return None;
         };
         ctx.copy_text(text);
         Some(items)
+    }
+
+    /// Adds the lights and things of a text from the clipboard. Their files become imported ones of this studio.
+    fn paste(&mut self, text: &str) {
+        let Some(ClipboardContent { mut scene, files }) = clipboard::pasted(text) else {
+            self.toasts.info("There are no lights or things on the clipboard.");
+            return;
+        };
+        let document = &mut self.document;
+        scene.rename_asset_files(|asset| {
+            let file = files.get(asset.path()?)?;
+            let path = document.asset_path_for(file, import_folder(asset));
+            document.note_import(path.clone(), file.clone());
+            Some(path)
+        });
+        self.apply(Action::Paste(Box::new(scene)), None);
     }
 
     fn mirror_selected(&mut self, copies: bool) {

@@ -4,6 +4,7 @@ use crate::editor::commands::command::Command;
 use crate::editor::document::action::Action;
 use crate::editor::document::catalog;
 use crate::editor::document::environment::{self, ReadEnvironment};
+use crate::editor::document::studio_document::ENVIRONMENTS;
 use crate::editor::panels::prompts::{self, PanoramaAnswer};
 use crate::editor::window::app::App;
 use crate::editor::window::background_tasks::TaskResult;
@@ -47,7 +48,7 @@ impl App {
     /// Puts an environment map that was read on its surround, or adds a surround with it.
     pub(super) fn use_environment(&mut self, light: Option<LightId>, environment: ReadEnvironment) {
         let ReadEnvironment { file, map, warnings } = environment;
-        let path = self.document.asset_path_for(&file, "environments");
+        let path = self.document.asset_path_for(&file, ENVIRONMENTS);
         let mut assets = Assets::default();
         assets.insert_environment(path.clone(), map);
         self.document.insert_assets(assets, &Default::default());

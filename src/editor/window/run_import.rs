@@ -3,6 +3,7 @@
 use crate::editor::document::files::{self, ImportedModel};
 use crate::editor::document::model_import::{self, ModelChoice, RunningLoad};
 use crate::editor::document::placement;
+use crate::editor::document::studio_document::{MODELS, TEXTURES};
 use crate::editor::panels::import_prompt::{ImportAnswer, PendingModel, import_ui};
 use crate::editor::window::app::App;
 use crate::editor::window::background_tasks::TaskResult;
@@ -80,7 +81,7 @@ impl App {
 
     fn bring_in(&mut self, mut model: ImportedModel, choice: ModelChoice) {
         let file = model.file.clone();
-        let path = self.document.asset_path_for(&file, "models");
+        let path = self.document.asset_path_for(&file, MODELS);
         let stem = file.file_stem().map_or_else(|| "Model".to_owned(), |stem| stem.to_string_lossy().into_owned());
         let mut assets = Assets::default();
         assets.insert_mesh(path.clone(), model.mesh.clone());
@@ -114,8 +115,8 @@ impl App {
             let texture = material.textures.get_mut(slot);
             if let Some(reference) = texture.take() {
                 let (path, kind_folder) = match &reference {
-                    TextureRef::File(path) => (path, "textures"),
-                    TextureRef::Embedded { model, .. } => (model, "models"),
+                    TextureRef::File(path) => (path, TEXTURES),
+                    TextureRef::Embedded { model, .. } => (model, MODELS),
                     TextureRef::Builtin(_) => {
                         *texture = Some(reference);
                         continue;

@@ -4,6 +4,7 @@ use crate::editor::document::action::Action;
 use crate::editor::document::item::Item;
 use crate::editor::document::measured_light::{self, MeasuredFile};
 use crate::editor::document::placement;
+use crate::editor::document::studio_document::LAMPS;
 use crate::editor::window::app::App;
 use crate::editor::window::background_tasks::TaskResult;
 use crate::editor::window::run_file_command::waker;
@@ -21,7 +22,7 @@ impl App {
     /// Puts a photometric file that was read on its light, or adds a light with it.
     pub(super) fn use_measured_light(&mut self, light: Option<LightId>, measured: MeasuredFile) {
         let MeasuredFile { file, table, warnings } = measured;
-        let path = self.document.asset_path_for(&file, "lamps");
+        let path = self.document.asset_path_for(&file, LAMPS);
         let mut assets = Assets::default();
         assets.insert_photometry(path.clone(), table.clone());
         self.document.insert_assets(assets, &Default::default());
