@@ -18,6 +18,9 @@ use eframe::egui::{self, Button, CollapsingHeader, ComboBox, Image, ProgressBar,
 /// Longest side of a picture, pixels.
 const LARGEST: f32 = 16_384.0;
 
+/// Largest height of the small picture, points: the inspector above it keeps its room.
+const THUMBNAIL_HEIGHT: f32 = 120.0;
+
 /// Draws the render panel.
 pub fn render_ui(
     ui: &mut Ui,
@@ -189,7 +192,7 @@ fn progress_text(phase: &RenderPhase, progress: &Progress) -> String {
 
 fn thumbnail_ui(ui: &mut Ui, rendering: &Rendering, scene: &Scene, out: &mut Vec<Command>) {
     let Some(texture) = rendering.texture() else { return };
-    let room = vec2(ui.available_width(), 200.0);
+    let room = vec2(ui.available_width(), THUMBNAIL_HEIGHT);
     let Some((width, height)) = rendering.size() else { return };
     let size = vec2(width as f32, height as f32);
     let size = size * (room.x / size.x).min(room.y / size.y);
