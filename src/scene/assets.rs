@@ -168,6 +168,12 @@ impl Assets {
         self.loaded.extend(other.loaded);
     }
 
+    /// Returns those that are not the same in another collection.
+    pub fn without(&self, other: &Assets) -> Self {
+        let is_new = |(key, asset): &(&AssetKey, &Asset)| !other.get(key).is_some_and(|known| known.is_same(asset));
+        Assets { loaded: self.iter().filter(is_new).map(|(key, asset)| (key.clone(), asset.clone())).collect() }
+    }
+
     /// Replaces the meshes of every figure, such as by fewer triangles.
     #[must_use]
     pub fn map_figures(mut self, change: impl Fn(&FigureMeshes) -> FigureMeshes) -> Self {

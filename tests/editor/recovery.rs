@@ -3,6 +3,8 @@
 use super::files::{PYRAMID, drop_file};
 use super::*;
 use catchlight::io::{RecoveryFolder, RecoveryInfo};
+use catchlight::scene::{Material, MaterialTextures, Object, TextureRef};
+use glam::Vec3;
 use std::collections::BTreeMap;
 use std::time::SystemTime;
 
@@ -62,7 +64,13 @@ fn an_unsaved_studio_survives_a_crash_and_is_offered_at_the_next_start() {
     wait_until(&mut second, |app| app.thumbnails().drawn() == 1);
     let picture = second.get_by_label("Picture of the unsaved studio").rect();
     assert!(picture.width() > 80.0 && picture.height() > 80.0, "{picture}");
+    // What this window has changed meanwhile is not thrown away unasked
+    let lights = scene(&second).lights.iter().map(|light| light.id).collect();
+    second.state_mut().run(Command::Apply(Action::Mute(lights, true)), None, &egui::Context::default());
+    settle(&mut second);
     click(&mut second, "Recover");
+    assert!(second.state().document().is_dirty() && second.query_by_label("Don't save").is_some());
+    click(&mut second, "Don't save");
     let document = second.state().document();
     assert_eq!(catchlight::io::write_scene(document.scene()), changed);
     assert!(document.is_dirty() && document.path() == Some(&file));
@@ -216,6 +224,57 @@ fn a_file_that_another_program_has_changed_is_not_overwritten_without_a_question
     assert!(errors(&window).is_empty(), "{:?}", errors(&window));
 }
 
+/// Tells the window that it has the keyboard or not.
+fn set_focus(window: &mut Window, focused: bool) {
+    window.input_mut().viewports.get_mut(&ViewportId::ROOT).unwrap().focused = Some(focused);
+    settle(window);
+}
+
+#[test]
+fn a_texture_that_another_program_has_painted_is_read_again_when_the_window_is_used_again() {
+    if !has_adapter() {
+        return;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let (studio, picture) = (folder.path().join("studio.ron"), folder.path().join("paper.png"));
+    let paint = |rgb: [u8; 3]| image::RgbImage::from_pixel(4, 4, image::Rgb(rgb)).save(&picture).unwrap();
+    paint([200, 40, 40]);
+    let texture = TextureRef::file("paper.png");
+    let textures = MaterialTextures::with_base_color(texture.clone());
+    let board = Object {
+        material: Material { textures, ..Material::default() },
+        ..Object::new("Board", Shape::Box { size_m: Vec3::ONE })
+    };
+    catchlight::io::save_scene(&Scene { objects: vec![board], ..Scene::default() }, &studio).unwrap();
+    let mut window = window(EditorOptions { initial: Some(StudioSource::File(studio)), ..EditorOptions::default() });
+    let color = |window: &Window| window.state().document().assets().texture(&texture).unwrap().rgb[0];
+    set_focus(&mut window, true);
+    assert_eq!(color(&window), [200, 40, 40]);
+    set_focus(&mut window, false);
+    set_focus(&mut window, true);
+    let said = |window: &Window, kind: ToastKind| {
+        let texts = window.state().toasts().texts(kind);
+        texts.into_iter().filter(|text| text.contains("paper.png")).map(str::to_owned).collect::<Vec<String>>()
+    };
+    assert!(said(&window, ToastKind::Info).is_empty(), "nothing has changed");
+    render_tiny(&mut window);
+    let is_out_of_date = |window: &Window| window.query_all_by_label_contains("Out of date").next().is_some();
+    assert!(!is_out_of_date(&window));
+
+    // Half a file is not taken, and the whole one is at the next time
+    set_focus(&mut window, false);
+    std::fs::write(&picture, "half").unwrap();
+    set_focus(&mut window, true);
+    assert_eq!((color(&window), said(&window, ToastKind::Warning).len()), ([200, 40, 40], 1));
+    set_focus(&mut window, false);
+    paint([40, 40, 200]);
+    set_focus(&mut window, true);
+    assert_eq!(color(&window), [40, 40, 200]);
+    assert_eq!(said(&window, ToastKind::Info), ["Changed by another program, and read again: paper.png."]);
+    assert!(is_out_of_date(&window), "the picture shows the former texture");
+    assert!(!window.state().document().is_dirty());
+}
+
 #[test]
 fn a_change_by_another_window_is_noticed_when_this_one_is_used_again() {
     if !has_adapter() {
@@ -227,10 +286,6 @@ fn a_change_by_another_window_is_noticed_when_this_one_is_used_again() {
     std::fs::write(&file, presets[0].text).unwrap();
     let mut window =
         window(EditorOptions { initial: Some(StudioSource::File(file.clone())), ..EditorOptions::default() });
-    let set_focus = |window: &mut Window, focused: bool| {
-        window.input_mut().viewports.get_mut(&ViewportId::ROOT).unwrap().focused = Some(focused);
-        settle(window);
-    };
     set_focus(&mut window, false);
     set_focus(&mut window, true);
     assert!(window.query_by_label("Take theirs").is_none(), "nothing has changed");

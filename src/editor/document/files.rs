@@ -1,6 +1,7 @@
 //! Reads and writes studios, models, assets and pictures, with errors as messages to the user.
 
 use crate::denoise::{Quality, denoise_layers};
+use crate::editor::document::asset_stamps::AssetStamps;
 use crate::editor::document::studio_document::Document;
 use crate::io::{
     self, AssetFiles, FileStamp, KeptPicture, LayeredPicture, LoadProgress, ModelFormat, ModelSetUp, PictureFormat,
@@ -182,8 +183,8 @@ pub fn import(file: PathBuf, progress: &LoadProgress) -> Result<Box<ImportedMode
     Ok(Box::new(ImportedModel { file, mesh, part_materials, set_up, states_metres, warnings }))
 }
 
-/// Reads the assets that a scene refers to and that are not loaded yet. `imported` maps paths in the scene to imported
-/// files outside the scene's folder.
+/// Reads the assets that a scene refers to and that are not loaded yet, and returns those. `imported` maps paths in the
+/// scene to imported files outside the scene's folder.
 pub fn load_assets(
     scene: &Scene,
     folder: Option<&Path>,
@@ -193,7 +194,41 @@ pub fn load_assets(
     let mut assets = known.clone();
     let files = AssetFiles { folder, imported };
     let warnings = io::load_assets_from(scene, files, &LoadProgress::default(), &mut assets);
-    (assets, warnings.iter().map(ToString::to_string).collect())
+    (assets.without(known), warnings.iter().map(ToString::to_string).collect())
+}
+
+/// Assets whose files another program has changed, read again.
+#[derive(Debug, Default)]
+pub struct RereadAssets {
+    /// The assets.
+    pub assets: Assets,
+    /// The paths of their files in the studio.
+    pub files: Vec<String>,
+    /// The states of all files. A changed one that could not be read keeps its former state, and is tried again.
+    pub stamps: AssetStamps,
+    /// Warnings of loading.
+    pub warnings: Vec<String>,
+}
+
+/// Reads the assets of a scene again whose files have changed since their stamps. `known` are the loaded ones.
+pub fn reread_changed(scene: &Scene, files: AssetFiles<'_>, known: &Assets, stamps: AssetStamps) -> RereadAssets {
+    let found = files.found(scene);
+    let changed: BTreeMap<&str, &PathBuf> =
+        found.iter().filter(|(_, file)| stamps.is_outdated(file)).map(|(path, file)| (&**path, file)).collect();
+    if changed.is_empty() {
+        return RereadAssets { stamps, ..RereadAssets::default() };
+    }
+    // Taken first: a change while a file is read counts as a change
+    let mut now = stamps.clone();
+    changed.values().for_each(|file| now.renew(file));
+    let mut unchanged = known.clone();
+    let is_changed = |path: Option<&str>| path.is_some_and(|path| changed.contains_key(path));
+    known.iter().filter(|(key, _)| is_changed(key.path())).for_each(|(key, _)| unchanged.remove(key));
+    let (assets, warnings) = load_assets(scene, files.folder, &unchanged, files.imported);
+    let (read, unread): (Vec<_>, Vec<_>) = changed.iter().partition(|(path, _)| assets.contains_file(path));
+    unread.into_iter().for_each(|(_, file)| now.restore(file, &stamps));
+    let files = read.into_iter().map(|(path, _)| (*path).to_owned()).collect();
+    RereadAssets { assets, files, stamps: now, warnings }
 }
 
 /// Writes the studio and copies its assets beside it. Returns the asset files that are gone, by the studio's paths.

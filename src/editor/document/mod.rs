@@ -3,6 +3,7 @@
 pub mod action;
 pub mod action_error;
 pub mod arrange;
+pub mod asset_stamps;
 pub mod bounds;
 pub mod catalog;
 pub mod clipboard;

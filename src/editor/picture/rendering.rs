@@ -76,6 +76,8 @@ pub struct Rendering {
     exported: Option<Weak<Film>>,
     /// The picture before the running render, until that has one.
     former: Option<KeptPicture>,
+    /// Models or textures have changed since the render began.
+    has_other_assets: bool,
     developer: FilmDeveloper<ShownPicture>,
     /// The newest requested picture.
     requested: Option<Requested>,
@@ -98,6 +100,7 @@ impl Rendering {
             film: None,
             exported: None,
             former: None,
+            has_other_assets: false,
             developer: FilmDeveloper::new(ShownPicture::new),
             requested: None,
             developed: None,
@@ -115,6 +118,7 @@ impl Rendering {
         let (scene, assets, cache) = (Arc::new(scene.clone()), assets.clone(), self.trees.clone());
         let request = RenderRequest { scene, assets, folder, imported, cache, settings };
         (self.job, self.develop_failure) = (Some(RenderJob::start(request, &wake(ctx))), None);
+        self.has_other_assets = false;
     }
 
     /// Shows a picture that was rendered before. One that a file holds need not be kept for the case of a crash.
@@ -278,9 +282,15 @@ impl Rendering {
         self.job.as_ref().map(|job| (job.settings.width, job.settings.height))
     }
 
+    /// Notes that models or textures of the studio have other content now.
+    pub fn note_changed_assets(&mut self) {
+        self.has_other_assets = true;
+    }
+
     /// Returns true if a new render would differ from the picture.
     pub fn is_out_of_date(&self, now: &Scene) -> bool {
         match (&self.film, &self.job) {
+            (Some(_), Some(_)) if self.has_other_assets => true,
             (Some(film), Some(job)) => !raytrace::is_up_to_date(film.layers(), &job.scene, &self.mix.mixed(now)),
             _ => false,
         }

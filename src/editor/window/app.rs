@@ -197,7 +197,7 @@ impl App {
         self.take_drops(ctx, out);
         self.take_close_request(ctx);
         self.quit_after_export(ctx);
-        self.check_file_on_focus(ctx);
+        self.check_files_on_focus(ctx);
         self.keep_unsaved(ctx);
         self.advance_tank(ctx);
         self.load_wanted_assets(ctx);

@@ -1,7 +1,8 @@
 //! File operations in the background and their results.
 
+use crate::editor::document::asset_stamps::AssetStamps;
 use crate::editor::document::environment::ReadEnvironment;
-use crate::editor::document::files::{ImportedModel, OpenedStudio, RecoveredStudio, StudioSource};
+use crate::editor::document::files::{ImportedModel, OpenedStudio, RecoveredStudio, RereadAssets, StudioSource};
 use crate::editor::document::measured_light::MeasuredFile;
 use crate::editor::window::recovery::Unsaved;
 use crate::io::{FileStamp, LoadProgress};
@@ -24,6 +25,15 @@ pub struct StudioLoad {
     pub open: Box<Scene>,
 }
 
+/// The reading of an unsaved studio.
+#[derive(Debug)]
+pub struct RecoveryLoad {
+    /// What is read.
+    pub unsaved: Unsaved,
+    /// The open studio when it began.
+    pub open: Box<Scene>,
+}
+
 /// The result of a background task.
 #[derive(Debug)]
 pub enum TaskResult {
@@ -37,10 +47,14 @@ pub enum TaskResult {
     Environment(Option<LightId>, Result<Box<ReadEnvironment>, String>),
     /// Assets of the scene: those loaded, those requested, and warnings.
     Assets(Assets, BTreeSet<AssetKey>, Vec<String>),
+    /// The states of the studio's asset files.
+    AssetsStamped(AssetStamps),
+    /// Assets whose files another program has changed.
+    AssetsReread(Box<RereadAssets>),
     /// The unsaved studios of windows that have ended.
     Unsaved(Vec<Unsaved>),
     /// A recovered studio or an error.
-    Recovered(Unsaved, Result<Box<RecoveredStudio>, String>),
+    Recovered(RecoveryLoad, Result<Box<RecoveredStudio>, String>),
     /// The studio's file compared with its stamp.
     FileChecked {
         /// The file.
@@ -64,7 +78,11 @@ impl TaskResult {
     /// Returns what is left of a result for a studio that is no longer open.
     fn of_another_studio(self) -> Option<Self> {
         match self {
-            TaskResult::Measured(..) | TaskResult::Environment(..) | TaskResult::Assets(..) => None,
+            TaskResult::Measured(..)
+            | TaskResult::Environment(..)
+            | TaskResult::Assets(..)
+            | TaskResult::AssetsStamped(_)
+            | TaskResult::AssetsReread(_) => None,
             TaskResult::Imported(progress, _) => Some(TaskResult::ImportOfAnotherStudio(progress)),
             other => Some(other),
         }

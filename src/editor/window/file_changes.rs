@@ -1,4 +1,5 @@
-//! Changes of the studio's file by other programs: noticed when the window is used again and before a save.
+//! Changes of the studio's file and its assets by other programs: noticed when the window is used again, and those of
+//! the studio's file before a save.
 
 use crate::editor::commands::command::Command;
 use crate::editor::document::files::StudioSource;
@@ -11,11 +12,21 @@ use eframe::egui::Context;
 use std::path::{Path, PathBuf};
 
 impl App {
-    /// Checks the studio's file in the background when the window gets the keyboard.
-    pub(super) fn check_file_on_focus(&mut self, ctx: &Context) {
+    /// Checks the studio's files in the background when the window gets the keyboard.
+    pub(super) fn check_files_on_focus(&mut self, ctx: &Context) {
         let has_focus = ctx.input(|i| i.viewport().focused) == Some(true);
-        let had_focus = std::mem::replace(&mut self.window.has_focus, has_focus);
-        if !has_focus || had_focus || self.session.file_change.is_some() {
+        match (std::mem::replace(&mut self.window.has_focus, has_focus), has_focus) {
+            (false, true) => {
+                self.check_studio_file(ctx);
+                self.reread_changed_assets(ctx);
+            }
+            (true, false) => self.stamp_assets(ctx),
+            (false, false) | (true, true) => {}
+        }
+    }
+
+    fn check_studio_file(&mut self, ctx: &Context) {
+        if self.session.file_change.is_some() {
             return;
         }
         let (Some(path), Some(stamp)) = (self.document.path(), self.document.stamp()) else { return };

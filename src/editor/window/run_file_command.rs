@@ -7,7 +7,7 @@ use crate::editor::document::action::Action;
 use crate::editor::document::files::{self, OpenedStudio, StudioSource};
 use crate::editor::document::item::Item;
 use crate::editor::document::selection::Selection;
-use crate::editor::document::studio_document::Document;
+use crate::editor::document::studio_document::{Document, TEXTURES};
 use crate::editor::panels::prompts::{self, PathAnswer, PathPrompt, PictureAnswer, ReplaceAnswer, UnsavedAnswer};
 use crate::editor::window::app::App;
 use crate::editor::window::background_tasks::{StudioLoad, TaskResult};
@@ -77,7 +77,8 @@ impl App {
         self.confirm_unsaved(PendingOperation::Load(source), ctx);
     }
 
-    fn confirm_unsaved(&mut self, pending: PendingOperation, ctx: &Context) {
+    /// Does what ends the studio, after a prompt for unsaved changes.
+    pub(super) fn confirm_unsaved(&mut self, pending: PendingOperation, ctx: &Context) {
         if self.document.is_dirty() {
             self.session.unsaved_prompt = Some(pending);
         } else {
@@ -98,6 +99,7 @@ impl App {
     fn execute_pending(&mut self, pending: PendingOperation, ctx: &Context) {
         match pending {
             PendingOperation::Load(source) => self.load(source, ctx),
+            PendingOperation::Recover => self.recover(ctx),
             PendingOperation::Quit if self.background.exports.is_busy() => {
                 self.session.quits_after_export = true;
                 self.toasts.info("A file is still being written: the window closes when it is complete.");
@@ -254,8 +256,10 @@ impl App {
                 self.document.insert_assets(assets, &tried);
                 warnings.into_iter().for_each(|warning| self.toasts.warning(warning));
             }
+            TaskResult::AssetsStamped(stamps) => self.session.asset_stamps = stamps,
+            TaskResult::AssetsReread(reread) => self.take_reread_assets(*reread),
             TaskResult::Unsaved(found) => self.session.recovery.offer(found),
-            TaskResult::Recovered(unsaved, result) => self.show_recovered(unsaved, result, ctx),
+            TaskResult::Recovered(recovery, result) => self.take_recovered(recovery, result, ctx),
             TaskResult::FileChecked { path, stamp, is_changed } => {
                 // The studio may have been saved or replaced since.
                 let is_current = self.document.path() == Some(&*path) && self.document.stamp() == Some(&stamp);
@@ -332,7 +336,7 @@ impl App {
             self.toasts.error(format!("{name} is no picture, so it can't be a texture ({kinds}).{hint}"));
             return;
         }
-        let path = self.document.asset_path_for(file, "textures");
+        let path = self.document.asset_path_for(file, TEXTURES);
         self.document.note_import(path.clone(), file.to_owned());
         let texture = Some(TextureRef::File(path));
         let scene = self.document.scene();
@@ -357,25 +361,6 @@ impl App {
         if let Some(action) = action {
             self.apply(action, None);
         }
-    }
-
-    /// Loads missing assets in the background, for example the mesh of a new figure.
-    pub(super) fn load_wanted_assets(&mut self, ctx: &Context) {
-        if self.background.tasks.is_busy() {
-            return;
-        }
-        let wanted = self.document.wanted_assets();
-        if wanted.is_empty() {
-            return;
-        }
-        let (scene, known) = (self.document.scene().clone(), self.document.finished_assets());
-        let folder = self.document.folder().map(Path::to_owned);
-        let imported = self.document.imported_files().clone();
-        let work = move || {
-            let (assets, warnings) = files::load_assets(&scene, folder.as_deref(), &known, &imported);
-            TaskResult::Assets(assets, wanted, warnings)
-        };
-        self.background.tasks.start(work, waker(ctx));
     }
 
     /// Handles files dropped on the window.

@@ -5,9 +5,10 @@ use crate::editor::document::files::{self, RecoveredStudio};
 use crate::editor::panels::recovery_prompt::{RecoveryAnswer, UnsavedStudio, recovery_ui};
 use crate::editor::ui::wake::wake;
 use crate::editor::window::app::App;
-use crate::editor::window::background_tasks::TaskResult;
+use crate::editor::window::background_tasks::{RecoveryLoad, TaskResult};
 use crate::editor::window::recovery::{Unsaved, WindowContent};
 use crate::editor::window::run_file_command::waker;
+use crate::editor::window::session::PendingOperation;
 use crate::io::RecoveryFolder;
 use crate::jobs::ThumbnailSubject;
 use eframe::egui::Context;
@@ -48,7 +49,7 @@ impl App {
         let subject = || Some(ThumbnailSubject::Scene(Box::new(folder.read().ok()?), beside()));
         let picture = self.background.thumbnails.unsaved(ctx, info.changed_at, subject);
         match recovery_ui(ctx, &UnsavedStudio { info, has_picture: folder.has_picture(), more, picture }) {
-            Some(RecoveryAnswer::Recover) => self.recover(ctx),
+            Some(RecoveryAnswer::Recover) => self.confirm_unsaved(PendingOperation::Recover, ctx),
             Some(RecoveryAnswer::Discard) => {
                 if let Some((folder, _)) = self.session.recovery.take_offered() {
                     folder.remove();
@@ -59,24 +60,36 @@ impl App {
         }
     }
 
-    fn recover(&mut self, ctx: &Context) {
+    /// Reads the unsaved studio on offer in the background.
+    pub(super) fn recover(&mut self, ctx: &Context) {
         let Some(unsaved) = self.session.recovery.take_offered() else { return };
         // One window has one studio: the others are offered at the next start.
         self.session.recovery.put_off();
+        let load = RecoveryLoad { unsaved, open: Box::new(self.document.scene().clone()) };
         let work = move || {
-            let result = files::recover(&unsaved.0, &unsaved.1);
-            TaskResult::Recovered(unsaved, result)
+            let result = files::recover(&load.unsaved.0, &load.unsaved.1);
+            TaskResult::Recovered(load, result)
         };
         self.background.tasks.start(work, waker(ctx));
     }
 
-    /// Opens a recovered studio, or says why that failed.
-    pub(super) fn show_recovered(
+    /// Takes a recovered studio. Asks first if the open one has changed meanwhile.
+    pub(super) fn take_recovered(
         &mut self,
-        (folder, info): Unsaved,
+        load: RecoveryLoad,
         result: Result<Box<RecoveredStudio>, String>,
         ctx: &Context,
     ) {
+        if result.is_ok() && self.document.is_dirty() && *self.document.scene() != *load.open {
+            self.session.recovery.offer(vec![load.unsaved]);
+            self.session.unsaved_prompt = Some(PendingOperation::Recover);
+        } else {
+            self.show_recovered(load.unsaved, result, ctx);
+        }
+    }
+
+    /// Opens a recovered studio, or says why that failed.
+    fn show_recovered(&mut self, (folder, info): Unsaved, result: Result<Box<RecoveredStudio>, String>, ctx: &Context) {
         match result {
             Ok(recovered) => {
                 let RecoveredStudio { opened, picture } = *recovered;

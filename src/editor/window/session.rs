@@ -1,6 +1,7 @@
 //! Prompts and file dialogs in progress.
 
 use crate::editor::commands::file_purpose::FilePurpose;
+use crate::editor::document::asset_stamps::AssetStamps;
 use crate::editor::document::files::StudioSource;
 use crate::editor::document::item::Item;
 use crate::editor::panels::import_prompt::PendingModel;
@@ -18,6 +19,8 @@ use std::sync::mpsc::Receiver;
 #[derive(Clone, Debug, PartialEq)]
 pub enum PendingOperation {
     Load(StudioSource),
+    /// The opening of the unsaved studio on offer.
+    Recover,
     Quit,
 }
 
@@ -26,6 +29,7 @@ impl PendingOperation {
         match self {
             PendingOperation::Load(StudioSource::File(_)) => "opening another studio",
             PendingOperation::Load(StudioSource::Preset(_) | StudioSource::Memory(_)) => "starting a new studio",
+            PendingOperation::Recover => "opening the recovered studio",
             PendingOperation::Quit => "quitting",
         }
     }
@@ -68,6 +72,8 @@ pub struct Session {
     pub(super) file_change: Option<FileChange>,
     /// The user decides about the noticed change before the next save.
     pub(super) file_change_put_off: bool,
+    /// The states of the studio's asset files when the window lost the keyboard.
+    pub(super) asset_stamps: AssetStamps,
     /// Unsaved changes, kept for the case of a crash.
     pub(super) recovery: Recovery,
 }
@@ -92,6 +98,7 @@ impl Session {
             quits_after_export: false,
             file_change: None,
             file_change_put_off: false,
+            asset_stamps: AssetStamps::default(),
             recovery,
         }
     }
@@ -100,6 +107,7 @@ impl Session {
     pub fn begin_studio(&mut self) {
         self.models.clear();
         (self.texture_for, self.file_change, self.file_change_put_off) = (None, None, false);
+        self.asset_stamps = AssetStamps::default();
     }
 
     /// Returns true while the desktop's dialog is open.
