@@ -114,13 +114,11 @@ pub struct ClothColor {
 }
 
 /// Colours of clothes and shoes.
-pub const CLOTH_COLORS: [ClothColor; 8] = [
+pub const CLOTH_COLORS: [ClothColor; 6] = [
     ClothColor { label: "White", base_color: [0.75, 0.75, 0.73] },
     ClothColor { label: "Sand", base_color: [0.5, 0.42, 0.31] },
-    ClothColor { label: "Grey", base_color: [0.2, 0.2, 0.2] },
     ClothColor { label: "Grey blue", base_color: [0.16, 0.2, 0.26] },
     ClothColor { label: "Red", base_color: [0.35, 0.035, 0.03] },
-    ClothColor { label: "Green", base_color: [0.05, 0.12, 0.06] },
     ClothColor { label: "Navy", base_color: [0.035, 0.045, 0.07] },
     ClothColor { label: "Black", base_color: [0.02, 0.02, 0.02] },
 ];

@@ -129,7 +129,7 @@ fn clothes_of_a_figure_take_a_colour_at_a_click_and_keep_their_cloth() {
     click(&mut window, "Figures");
     click(&mut window, "Add Woman, 34, long hair");
     let before = scene(&window).objects.last().unwrap().clone();
-    for (square, part, index) in [("Top colour: Red", "top", 4), ("Shoe colour: White", "shoes", 0)] {
+    for (square, part, index) in [("Top colour: Red", "top", 3), ("Shoe colour: White", "shoes", 0)] {
         window.get_by_label(square).scroll_to_me();
         settle(&mut window);
         click(&mut window, square);

@@ -158,10 +158,10 @@ fn color_squares<C>(
         let square = swatch(ui, shown(color), vec2(20.0, 20.0)).interact(Sense::click()).on_hover_text(name);
         // Named for screen readers, and for tests
         square.widget_info(|| WidgetInfo::selected(Role::Button, true, is_current, format!("{label}: {name}")));
-        if is_current {
-            let stroke = ui.visuals().widgets.active.fg_stroke;
-            ui.painter().rect_stroke(square.rect, CornerRadius::same(3), stroke, StrokeKind::Outside);
-        }
+        let widgets = &ui.visuals().widgets;
+        // Black is as dark as the panel
+        let stroke = if is_current { widgets.active.fg_stroke } else { widgets.noninteractive.bg_stroke };
+        ui.painter().rect_stroke(square.rect, CornerRadius::same(3), stroke, StrokeKind::Outside);
         if square.clicked() {
             clicked = Some(choice);
         }
@@ -218,24 +218,31 @@ fn pose_rows(ui: &mut Ui, figure: &mut Figure) -> bool {
     wants_stool
 }
 
-/// Draws the garments and their colours, and the hair and its colour.
+/// Draws the garments and the hair, each with its colours.
 fn clothes_rows(ui: &mut Ui, object: &mut Object) {
     let Shape::Figure(figure) = &mut object.shape else { return };
     row(ui, "Top", "", |ui| {
         picker(ui, "top", Top::ALL.into_iter().map(|top| (top.label(), top)), &mut figure.top);
     });
+    cloth_color_row(ui, object, "top", "Top colour");
+    let Shape::Figure(figure) = &mut object.shape else { return };
     row(ui, "Below", "", |ui| {
         picker(ui, "bottom", Bottom::ALL.into_iter().map(|bottom| (bottom.label(), bottom)), &mut figure.bottom);
     });
+    cloth_color_row(ui, object, "bottom", "Below colour");
+    cloth_color_row(ui, object, "shoes", "Shoe colour");
+    hair_rows(ui, object);
+}
+
+/// Draws hair and beard and their colour.
+fn hair_rows(ui: &mut Ui, object: &mut Object) {
+    let Shape::Figure(figure) = &mut object.shape else { return };
     row(ui, "Hair", "", |ui| {
         picker(ui, "hair", HairStyle::ALL.into_iter().map(|hair| (hair.label(), hair)), &mut figure.hair);
     });
     row(ui, "Beard", "", |ui| {
         picker(ui, "beard", Beard::ALL.into_iter().map(|beard| (beard.label(), beard)), &mut figure.beard);
     });
-    for (part, label) in [("top", "Top colour"), ("bottom", "Below colour"), ("shoes", "Shoe colour")] {
-        cloth_color_row(ui, object, part, label);
-    }
     let tip = "Of hair, beard and brows. Each of them has a colour of its own below, dyes as well";
     let look = |color: &MaterialPreset| {
         let (name, material) = (color.label(), color.material());
