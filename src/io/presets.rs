@@ -3,7 +3,9 @@
 use super::error::LoadError;
 use super::load_progress::LoadProgress;
 use super::scene_file::{self, Loaded};
-use crate::scene::Scene;
+use super::texture;
+use crate::scene::{Scene, Texture};
+use std::path::Path;
 use std::sync::LazyLock;
 
 /// A studio preset.
@@ -19,6 +21,8 @@ pub struct Preset {
     pub description: String,
     /// Content of the file.
     pub text: &'static str,
+    /// What its camera sees, rendered: the content of a JPEG file.
+    jpeg: &'static [u8],
 }
 
 impl Preset {
@@ -37,6 +41,12 @@ impl Preset {
     pub fn load(&self) -> Result<Loaded, LoadError> {
         let (scene, warnings) = scene_file::parse_scene(self.text)?;
         Ok(scene_file::complete(scene, warnings, None, &LoadProgress::default()))
+    }
+
+    /// Returns what its camera sees, rendered, with a longer side of 224 pixels; none if the program is damaged.
+    /// `studio_presets/pictures/make.sh` makes it.
+    pub fn picture(&self) -> Option<Texture> {
+        texture::decode(self.jpeg, Path::new(self.file_name)).ok().map(|decoded| decoded.texture)
     }
 }
 
@@ -70,35 +80,47 @@ impl PresetGroup {
 }
 
 macro_rules! embedded {
-    ($($group:ident $file:literal),+ $(,)?) => {
-        &[$((PresetGroup::$group, $file, include_str!(concat!("../../studio_presets/", $file)))),+]
+    ($($group:ident $stem:literal),+ $(,)?) => {
+        &[$(Embedded {
+            group: PresetGroup::$group,
+            file_name: concat!($stem, ".ron"),
+            text: include_str!(concat!("../../studio_presets/", $stem, ".ron")),
+            jpeg: include_bytes!(concat!("../../studio_presets/pictures/", $stem, ".jpg")),
+        }),+]
     };
 }
 
-/// Groups, file names and contents: portraits from the plain to the special, then groups, then products.
-const FILES: &[(PresetGroup, &str, &str)] = embedded![
-    Portrait "three_point.ron",
-    Portrait "rembrandt.ron",
-    Portrait "butterfly.ron",
-    Portrait "loop.ron",
-    Portrait "split.ron",
-    Portrait "clamshell.ron",
-    Portrait "rim_low_key.ron",
-    Portrait "high_key.ron",
-    Portrait "gel_portrait.ron",
-    Continuous "window_light.ron",
-    Groups "group.ron",
-    Continuous "interview.ron",
-    Product "product_still_life.ron",
-    Product "tank_landscape.ron",
-    Product "bottle_splash.ron",
-    Product "pouring_drink.ron",
+/// The files of a preset.
+struct Embedded {
+    group: PresetGroup,
+    file_name: &'static str,
+    text: &'static str,
+    jpeg: &'static [u8],
+}
+
+/// The files of all presets: portraits from the plain to the special, then groups, then products.
+const FILES: &[Embedded] = embedded![
+    Portrait "three_point",
+    Portrait "rembrandt",
+    Portrait "butterfly",
+    Portrait "loop",
+    Portrait "split",
+    Portrait "clamshell",
+    Portrait "rim_low_key",
+    Portrait "high_key",
+    Portrait "gel_portrait",
+    Continuous "window_light",
+    Groups "group",
+    Continuous "interview",
+    Product "product_still_life",
+    Product "tank_landscape",
+    Product "bottle_splash",
+    Product "pouring_drink",
 ];
 
 /// Returns all presets, in menu order.
 pub fn presets() -> &'static [Preset] {
-    static PRESETS: LazyLock<Vec<Preset>> =
-        LazyLock::new(|| FILES.iter().map(|&(group, file, text)| preset(group, file, text)).collect());
+    static PRESETS: LazyLock<Vec<Preset>> = LazyLock::new(|| FILES.iter().map(preset).collect());
     &PRESETS
 }
 
@@ -109,10 +131,11 @@ pub fn find_preset(name: &str) -> Option<&'static Preset> {
     presets().iter().find(|p| p.file_name.trim_end_matches(".ron") == stem || p.name.to_lowercase() == wanted)
 }
 
-fn preset(group: PresetGroup, file_name: &'static str, text: &'static str) -> Preset {
+fn preset(embedded: &Embedded) -> Preset {
+    let Embedded { group, file_name, text, jpeg } = *embedded;
     let (name, description) = scene_file::parse_scene(text)
         .map_or_else(|error| (file_name.to_owned(), error.to_string()), |(scene, _)| (scene.name, scene.description));
-    Preset { file_name, group, name, description, text }
+    Preset { file_name, group, name, description, text, jpeg }
 }
 
 #[cfg(test)]

@@ -1,11 +1,11 @@
-//! Thumbnails of studios and of objects, drawn one by one in the background by the CPU z-buffer, so without
-//! shadows.
+//! Thumbnails of studios and of objects, made one by one in the background: shipped studios have pictures that were
+//! rendered, the rest is drawn by the CPU z-buffer, so without shadows.
 
 use super::threads::{Priority, background_pool};
 use super::worker::{Inbox, Interrupt, Wake, Worker, WorkerSettings};
 use crate::color::ToneTable;
 use crate::raster::{self, Framebuffer, NO_OBJECT, Shading};
-use crate::scene::{Aim, Assets, Camera, CameraFrame, Emitter, Light, LightColor, Object, Output, Scene};
+use crate::scene::{Aim, Assets, Camera, CameraFrame, Emitter, Light, LightColor, Object, Output, Scene, Texture};
 use crate::{io, math};
 use glam::{Vec2, Vec3};
 use std::collections::VecDeque;
@@ -24,7 +24,7 @@ const MARGIN: f32 = 1.04;
 /// The subject of a thumbnail.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ThumbnailSubject {
-    /// A shipped studio, by its index in the list, as its camera sees it.
+    /// A shipped studio, by its index in the list, as its camera sees it. Its picture has a size of its own.
     Studio(usize),
     /// A figure, prop or backdrop.
     Object(Box<Object>),
@@ -129,7 +129,7 @@ fn known_or_drawn(subject: ThumbnailSubject, side: u32) -> Option<ThumbnailImage
 /// Draws a thumbnail with a longest side of `side` pixels. None if its studio or mesh cannot be loaded.
 pub fn draw_thumbnail(subject: ThumbnailSubject, side: u32) -> Option<ThumbnailImage> {
     match subject {
-        ThumbnailSubject::Studio(index) => draw_studio(index, side),
+        ThumbnailSubject::Studio(index) => rendered_studio(index),
         ThumbnailSubject::Object(object) => draw_object(*object, side),
         ThumbnailSubject::Scene(scene, folder) => {
             let mut assets = Assets::default();
@@ -139,9 +139,9 @@ pub fn draw_thumbnail(subject: ThumbnailSubject, side: u32) -> Option<ThumbnailI
     }
 }
 
-fn draw_studio(index: usize, side: u32) -> Option<ThumbnailImage> {
-    let loaded = io::presets().get(index)?.load().ok()?;
-    Some(draw_scene(&loaded.scene, &loaded.assets, side))
+fn rendered_studio(index: usize) -> Option<ThumbnailImage> {
+    let Texture { width, height, rgb, .. } = io::presets().get(index)?.picture()?;
+    Some(ThumbnailImage { size: [width as usize, height as usize], rgb: rgb.into_flattened() })
 }
 
 fn draw_scene(scene: &Scene, assets: &Assets, side: u32) -> ThumbnailImage {
@@ -203,7 +203,8 @@ mod tests {
     #[test]
     fn every_shipped_studio_has_a_thumbnail_in_its_cameras_shape() {
         for (index, preset) in io::presets().iter().enumerate() {
-            let [width, height] = draw_studio(index, 168).unwrap().size;
+            let [width, height] = rendered_studio(index).unwrap().size;
+            assert_eq!(width.max(height), 224, "{}", preset.name);
             let aspect = preset.scene().unwrap().camera.aspect();
             assert!((width as f32 / height as f32 - aspect).abs() < 0.02, "{}", preset.name);
         }

@@ -2,6 +2,7 @@
 
 use crate::people::{coarse_and_hairless, prepared, shipped};
 use crate::studio::measure::film_with;
+use catchlight::color::display_srgb8;
 use catchlight::io;
 use catchlight::raytrace::{self, Film, Method, RenderControl, RenderScene, Settings};
 use std::ops::ControlFlow;
@@ -9,6 +10,18 @@ use std::ops::ControlFlow;
 fn render(scene: &RenderScene, settings: &Settings, threads: usize) -> Film {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
     pool.install(|| raytrace::render(scene, settings, &RenderControl::new(), &mut |_| ControlFlow::Continue(())))
+}
+
+/// Returns the mean bytes of four by four blocks of a picture, by channel.
+fn blocks(rgb: &[[u8; 3]], width: u32) -> Vec<f32> {
+    let (width, height) = (width as usize, rgb.len() / width as usize);
+    let (mut sums, mut counts) = ([[0.0; 3]; 16], [0.0; 16]);
+    for (index, pixel) in rgb.iter().enumerate() {
+        let block = index / width * 4 / height * 4 + index % width * 4 / width;
+        counts[block] += 1.0;
+        sums[block].iter_mut().zip(pixel).for_each(|(sum, byte)| *sum += f32::from(*byte));
+    }
+    sums.iter().zip(counts).flat_map(|(sums, count)| sums.map(|sum| sum / count)).collect()
 }
 
 #[test]
@@ -25,6 +38,14 @@ fn every_preset_renders_finite_and_lit() {
         let brightest = picture.rgb.iter().map(|p| p[1]).fold(0.0, f32::max);
         // A low-key picture, too, has an edge of a face near middle grey.
         assert!(brightest > 0.15, "{}: the brightest pixel is {brightest}", preset.file_name);
+
+        // The picture in the list of studios shows the same
+        let shown = preset.picture().unwrap();
+        let traced: Vec<[u8; 3]> = picture.rgb.iter().map(|rgb| display_srgb8(*rgb)).collect();
+        let (shown, traced) = (blocks(&shown.rgb, shown.width), blocks(&traced, width));
+        let difference = shown.iter().zip(&traced).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
+        println!("{} {difference}", preset.file_name);
+        assert!(difference < 10.0, "{}: off by {difference} of 255: make.sh makes it anew", preset.file_name);
     }
 }
 

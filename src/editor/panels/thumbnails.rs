@@ -10,7 +10,7 @@ use std::collections::HashMap;
 use std::time::SystemTime;
 
 /// Longer side of a studio's thumbnail, points.
-pub const STUDIO_POINTS: f32 = 84.0;
+pub const STUDIO_POINTS: f32 = 112.0;
 /// Longer side of an unsaved studio's thumbnail, points.
 pub const UNSAVED_POINTS: f32 = 150.0;
 /// Side of a thing's thumbnail, points.
