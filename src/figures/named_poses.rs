@@ -109,10 +109,10 @@ impl NamedPose {
             NamedPose::HandsOnHips => Pose { arms: [ON_HIP; 2], ..standing },
             NamedPose::ThreeQuarter => turned(relaxed, 25.0, 12.0, -30.0),
             NamedPose::OverShoulder => turned(relaxed, 55.0, 25.0, -70.0),
-            NamedPose::ArmsCrossed => Pose { arms: [CROSSED_UNDER, CROSSED_OVER], ..standing },
+            NamedPose::ArmsCrossed => Pose { arms: CROSSED, ..standing },
             NamedPose::HandsJoined => Pose { arms: [JOINED; 2], ..standing },
             NamedPose::HandsBehind => Pose { arms: [BEHIND; 2], ..standing },
-            NamedPose::HandAtChin => Pose { arms: [CROSSED_UNDER, AT_CHIN], ..relaxed },
+            NamedPose::HandAtChin => Pose { arms: [SUPPORTING, AT_CHIN], ..relaxed },
             NamedPose::HandInHair => Pose { arms: [relaxed.arms[0], IN_HAIR], ..relaxed },
             NamedPose::Walking => walking(),
             NamedPose::Leaning => leaning(),
@@ -140,8 +140,30 @@ const HANGING: Arm = Arm {
 const PLANTED: Leg = Leg { out_m: 0.1, forward_m: 0.0, up_m: 0.0, toes_out_deg: 9.0, knee_out_deg: 0.0, heel_deg: 0.0 };
 const ON_HIP: Arm =
     Arm { out_deg: 48.0, forward_deg: -22.0, twist_deg: -52.0, elbow_deg: 96.0, wrist_deg: 20.0, ..HANGING };
-const CROSSED_UNDER: Arm = Arm { out_deg: 4.0, forward_deg: 34.0, twist_deg: -58.0, elbow_deg: 100.0, ..HANGING };
-const CROSSED_OVER: Arm = Arm { out_deg: 8.0, forward_deg: 44.0, twist_deg: -62.0, elbow_deg: 104.0, ..HANGING };
+/// Of a usual body, the left hand is tucked in between ribs and upper arm, and the right one lies on the upper arm.
+const CROSSED: [Arm; 2] = [
+    Arm {
+        shoulder_deg: 1.1,
+        out_deg: 11.6,
+        forward_deg: 28.6,
+        twist_deg: -90.0,
+        elbow_deg: 103.6,
+        forearm_deg: 10.5,
+        wrist_deg: 4.7,
+        fingers: 0.57,
+    },
+    Arm {
+        shoulder_deg: -8.2,
+        out_deg: -4.2,
+        forward_deg: 37.7,
+        twist_deg: -84.0,
+        elbow_deg: 104.0,
+        forearm_deg: 33.1,
+        wrist_deg: 6.4,
+        fingers: 0.08,
+    },
+];
+const SUPPORTING: Arm = Arm { out_deg: 4.0, forward_deg: 34.0, twist_deg: -58.0, elbow_deg: 100.0, ..HANGING };
 const JOINED: Arm = Arm { out_deg: 4.0, forward_deg: 14.0, twist_deg: -38.0, elbow_deg: 52.0, fingers: 0.4, ..HANGING };
 const BEHIND: Arm = Arm { out_deg: 12.0, forward_deg: -36.0, twist_deg: -75.0, elbow_deg: 52.0, ..HANGING };
 const AT_CHIN: Arm =
@@ -213,8 +235,6 @@ fn leaning() -> Pose {
         ..Pose::default()
     }
 }
-
-const CROSSED: [Arm; 2] = [CROSSED_UNDER, CROSSED_OVER];
 
 fn seated(seat_m: f32) -> Pose {
     Pose {
@@ -308,6 +328,51 @@ impl NamedExpression {
             NamedExpression::Laugh => Expression { smile: 0.85, teeth: 0.7, mouth_open: 0.3, squint: 0.2, ..neutral },
             NamedExpression::Serious => Expression { brows_down: 0.15, lips_pressed: 0.25, eyes_wide: 0.4, ..neutral },
             NamedExpression::EyesClosed => Expression { eyes_closed: 1.0, ..neutral },
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::figures::BodyData;
+    use crate::figures::posed_body::PosedBody;
+    use crate::figures::regions::{Edges, Place};
+    use crate::scene::{Body, Figure};
+    use glam::Vec3;
+
+    /// Returns the vertices of a posed body at places of one side, left or right.
+    fn part(body: &PosedBody, is_left: bool, is_in: impl Fn(Place) -> bool) -> Vec<Vec3> {
+        let data = BodyData::shipped();
+        let is_in = |v: &usize| (data.positions[*v].x > 0.0) == is_left && is_in(Edges::shipped().place(*v as u16));
+        (0..data.positions.len()).filter(is_in).map(|v| body.positions[v]).collect()
+    }
+
+    /// Returns the distance within which a tenth of some vertices lie from others, metres.
+    fn nearest_tenth_m(vertices: &[Vec3], others: &[Vec3]) -> f32 {
+        let nearest = |v: &Vec3| others.iter().map(|other| v.distance(*other)).fold(f32::INFINITY, f32::min);
+        let mut distances: Vec<f32> = vertices.iter().map(nearest).collect();
+        distances.sort_by(f32::total_cmp);
+        distances[distances.len() / 10]
+    }
+
+    #[test]
+    fn hands_of_crossed_arms_and_on_hips_lie_on_the_body() {
+        let upper_arm = |place: Place| matches!(place, Place::Arm(at) if at < 1.0);
+        let hand = |place: Place| matches!(place, Place::Arm(at) if at >= 2.0);
+        let trunk = |place: Place| matches!(place, Place::Trunk { .. });
+        // Vertices are up to 3 cm apart
+        for (sex, height_m, weight) in [(0.0, 1.66, 0.45), (1.0, 1.8, 0.5), (1.0, 1.82, 0.3), (1.0, 1.78, 0.8)] {
+            let figure = Figure { body: Body { sex, height_m, weight, ..Body::default() }, ..Figure::default() };
+            let posed =
+                |named: NamedPose| PosedBody::new(BodyData::shipped(), &Figure { pose: named.pose(), ..figure });
+            let body = posed(NamedPose::ArmsCrossed);
+            let over = nearest_tenth_m(&part(&body, false, hand), &part(&body, true, upper_arm));
+            let under = nearest_tenth_m(&part(&body, true, hand), &part(&body, false, upper_arm));
+            let hips = posed(NamedPose::HandsOnHips);
+            let trunk: Vec<Vec3> = [true, false].into_iter().flat_map(|side| part(&hips, side, trunk)).collect();
+            let on_hip = nearest_tenth_m(&part(&hips, true, hand), &trunk);
+            assert!(over.max(under).max(on_hip) < 0.04, "{sex} {weight}: {over} {under} {on_hip}");
         }
     }
 }

@@ -10,7 +10,7 @@ use std::collections::HashMap;
 use std::time::SystemTime;
 
 /// Longer side of a studio's thumbnail, points.
-pub const STUDIO_POINTS: f32 = 112.0;
+pub const STUDIO_POINTS: f32 = 92.0;
 /// Longer side of an unsaved studio's thumbnail, points.
 pub const UNSAVED_POINTS: f32 = 150.0;
 /// Side of a thing's thumbnail, points.
@@ -43,10 +43,11 @@ impl Thumbnail {
         Some(Thumbnail { texture: image_texture.id()?, size: size.into() })
     }
 
-    /// Paints it in the middle of `rect`.
+    /// Paints it in the middle of `rect`, no larger than that.
     pub fn paint(&self, ui: &egui::Ui, rect: Rect) {
         let whole = Rect::from_min_max(Pos2::ZERO, pos2(1.0, 1.0));
-        ui.painter().image(self.texture, Rect::from_center_size(rect.center(), self.size), whole, Color32::WHITE);
+        let size = self.size * (rect.size() / self.size).min_elem().min(1.0);
+        ui.painter().image(self.texture, Rect::from_center_size(rect.center(), size), whole, Color32::WHITE);
     }
 }
 
