@@ -168,7 +168,7 @@ impl Assets {
         self.loaded.extend(other.loaded);
     }
 
-    /// Returns those that are not the same in another collection.
+    /// Returns the assets that another collection does not hold, or holds another one of.
     pub fn without(&self, other: &Assets) -> Self {
         let is_new = |(key, asset): &(&AssetKey, &Asset)| !other.get(key).is_some_and(|known| known.is_same(asset));
         Assets { loaded: self.iter().filter(is_new).map(|(key, asset)| (key.clone(), asset.clone())).collect() }

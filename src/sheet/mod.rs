@@ -16,7 +16,7 @@ mod file;
 mod font;
 mod gear;
 mod html;
-mod label_places;
+mod label_layout;
 mod lengths;
 mod lesson;
 mod light_facts;

@@ -3,7 +3,7 @@
 use super::content::{DISTANCES, SheetContent};
 use super::drawing::{Align, Drawing, Element, Text};
 use super::font::Font;
-use super::label_places::{Area, contains, corners, segment_meets};
+use super::label_layout::{PageRect, contains, corners, segment_meets};
 use super::lengths::Units;
 use super::page::page;
 use super::view::{Sight, StudioView, ViewFrom};
@@ -17,7 +17,7 @@ const MM_PER_M: f32 = 20.0;
 const PEOPLE: [u8; 3] = [222, 203, 188];
 
 /// Returns the elements of a view within its frame, and the frame.
-fn drawn(scene: &Scene, assets: &Assets, from: ViewFrom) -> (Vec<Element>, Area) {
+fn drawn(scene: &Scene, assets: &Assets, from: ViewFrom) -> (Vec<Element>, PageRect) {
     let subject = scene.meter.map_or_else(|| scene.aim_point(&scene.camera.aim, scene.camera.position), |m| m.position);
     let sight = |light: &Light| Sight { aim: Some(scene.aim_point(&light.aim, light.position)), target: Some(subject) };
     let sights: Vec<Sight> = scene.lights.iter().map(sight).collect();
@@ -28,7 +28,7 @@ fn drawn(scene: &Scene, assets: &Assets, from: ViewFrom) -> (Vec<Element>, Area)
 }
 
 /// Returns the place of the characters of a text.
-fn area_of(text: &Text, font: &Font) -> Area {
+fn area_of(text: &Text, font: &Font) -> PageRect {
     let width = font.width(&text.text, text.size_mm);
     let left = match text.align {
         Align::Left => text.at.x,
@@ -46,7 +46,7 @@ fn labels_of_shipped_studios_are_in_the_frame_and_cover_neither_each_other_nor_p
         for from in [ViewFrom::Above, ViewFrom::Side] {
             let (elements, frame) = drawn(&loaded.scene, &loaded.assets, from);
             let name = &preset.file_name;
-            let texts: Vec<(&str, Area)> = elements
+            let texts: Vec<(&str, PageRect)> = elements
                 .iter()
                 .filter_map(|element| match element {
                     Element::Text(text) => Some((text.text.as_str(), area_of(text, &font))),

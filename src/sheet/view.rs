@@ -1,7 +1,7 @@
 //! The studio from above and from the side, to scale.
 
 use super::drawing::Rgb;
-use super::label_places::contains;
+use super::label_layout::contains;
 use super::silhouette::{convex_hull, outlines};
 use crate::scene::{Assets, CameraFrame, Light, Object, Scene, Shape, tessellate};
 use crate::setup::LightShape;

@@ -2,7 +2,7 @@
 
 use super::drawing::{Element, Rgb, Stroke};
 use super::font::Font;
-use super::label_places::contains;
+use super::label_layout::contains;
 use super::lengths::Units;
 use super::view::{GREY, PlacedLight, StudioView, ViewFrom};
 use super::view_labels::{LABEL_MM, PlacedView};
@@ -30,7 +30,7 @@ impl StudioView {
             light.draw(&mut inside, &path, self.from, self.is_before(light));
         }
         inside.extend(self.camera.iter().map(|part| Element::polygon(path(part), Some(CAMERA), None)));
-        let subject = placed.place(self.subject);
+        let subject = placed.on_page(self.subject);
         inside.push(Element::circle(subject, 0.7, Some([255; 3]), Some(Stroke::new([200, 30, 30], 0.4))));
         inside.extend(placed.labels(font, units));
         vec![

@@ -2,8 +2,9 @@
 
 use super::drawing::{Align, Element, Rgb, Stroke};
 use super::font::Font;
-use super::label_places::{
-    Area, Cover, LabelPlaces, Owner, Place, area_around, corners, nearest_in, places_around, segment_meets,
+use super::label_layout::{
+    LabelLayout, LabelPosition, Overlap, Owner, PageRect, area_around, corners, nearest_in, positions_around,
+    segment_meets,
 };
 use super::lengths::Units;
 use super::view::{GREY, Outlined, PlacedLight, StudioView, ViewFrom};
@@ -32,81 +33,82 @@ pub struct PlacedView<'a> {
     /// The view.
     pub view: &'a StudioView,
     /// Its frame, millimetres.
-    pub frame: Area,
+    pub frame: PageRect,
     /// Millimetres on the page in a metre.
     pub mm_per_m: f32,
 }
 
 impl PlacedView<'_> {
     /// Returns the point of the page for a point of the view.
-    pub fn place(&self, point: Vec2) -> Vec2 {
+    pub fn on_page(&self, point: Vec2) -> Vec2 {
         self.frame[0] + (point - self.view.low) * self.mm_per_m
     }
 
     /// Returns the points of the page for an outline of the view.
     pub fn path(&self, points: &[Vec2]) -> Vec<Vec2> {
-        points.iter().map(|point| self.place(*point)).collect()
+        points.iter().map(|point| self.on_page(*point)).collect()
     }
 
     /// Returns the labels: numbers first, then distances, then names.
     pub fn labels(&self, font: &Font, units: Units) -> Vec<Element> {
-        let mut places = self.marks();
+        let mut layout = self.marks();
         let mut out = Vec::new();
-        self.view.lights.iter().for_each(|light| self.draw_number(&mut out, &mut places, light));
+        self.view.lights.iter().for_each(|light| self.draw_number(&mut out, &mut layout, light));
         if self.view.from == ViewFrom::Above {
-            self.view.lights.iter().for_each(|light| self.draw_distance(&mut out, &mut places, light, font, units));
-            self.draw_names(&mut out, &mut places, font);
+            self.view.lights.iter().for_each(|light| self.draw_distance(&mut out, &mut layout, light, font, units));
+            self.draw_names(&mut out, &mut layout, font);
         }
         out
     }
 
     /// Returns what labels keep off.
-    fn marks(&self) -> LabelPlaces {
+    fn marks(&self) -> LabelLayout {
         let view = self.view;
-        let mut places = LabelPlaces::new([self.frame[0] + EDGE_MM, self.frame[1] - EDGE_MM]);
-        places.add(vec![corners(area_around(self.place(view.subject), Vec2::splat(2.0)))], Cover::Never, None);
+        let mut layout = LabelLayout::new([self.frame[0] + EDGE_MM, self.frame[1] - EDGE_MM]);
+        layout.add(vec![corners(area_around(self.on_page(view.subject), Vec2::splat(2.0)))], Overlap::Never, None);
         for thing in &view.things {
             let outlines: Vec<Vec<Vec2>> = thing.outlines.iter().map(|outline| self.path(outline)).collect();
             match (thing.is_person, thing.is_small()) {
-                (true, _) => places.add(outlines, Cover::Never, None),
-                (false, true) => places.add(outlines, Cover::Unwillingly, None),
+                (true, _) => layout.add(outlines, Overlap::Never, None),
+                (false, true) => layout.add(outlines, Overlap::Reluctant, None),
                 // The edges of what is large
                 (false, false) => outlines.into_iter().for_each(|mut outline| {
                     outline.extend(outline.first().copied());
-                    places.add_line(outline, None);
+                    layout.add_line(outline, None);
                 }),
             }
         }
-        view.camera.iter().for_each(|part| places.add(vec![self.path(part)], Cover::Unwillingly, None));
-        view.field.iter().for_each(|line| places.add_line(self.path(line), None));
+        view.camera.iter().for_each(|part| layout.add(vec![self.path(part)], Overlap::Reluctant, None));
+        view.field.iter().for_each(|line| layout.add_line(self.path(line), None));
         for light in &view.lights {
             let (body, sight) = (Some(Owner::Body(light.number)), Some(Owner::Sight(light.number)));
             let outline = self.path(&light.body);
             match view.is_before(light) {
-                true => places.add_line(outline.iter().chain(outline.first()).copied().collect(), body),
-                false => places.add(vec![outline], Cover::Unwillingly, body),
+                true => layout.add_line(outline.iter().chain(outline.first()).copied().collect(), body),
+                false => layout.add(vec![outline], Overlap::Reluctant, body),
             }
-            light.sight_lines(view.from).for_each(|(line, _)| places.add_line(self.path(&line), sight));
+            light.sight_lines(view.from).for_each(|(line, _)| layout.add_line(self.path(&line), sight));
         }
-        places
+        layout
     }
 
     /// Draws the number of a light behind its head, or beside it where that is taken.
-    fn draw_number(&self, out: &mut Vec<Element>, places: &mut LabelPlaces, light: &PlacedLight) {
+    fn draw_number(&self, out: &mut Vec<Element>, layout: &mut LabelLayout, light: &PlacedLight) {
         let behind = light.backwards.normalize_or(Vec2::NEG_Y);
-        let head = nearest_in(self.frame, self.place(light.head));
+        let head = nearest_in(self.frame, self.on_page(light.head));
         let ways = [0.6, 2.4, 5.0, 9.0, 14.0].into_iter().flat_map(|gap| {
             (0..16).map(move |turn| {
                 let turned = Vec2::from_angle(TAU * turn as f32 / 16.0).rotate(behind);
                 let middle = head + turned * (BADGE_MM + gap);
                 let leader = (gap > LEADER_MM).then_some([middle - turned * BADGE_MM, head]);
-                Place { leader, ..Place::new(middle, gap + 2.0 * (1.0 - turned.dot(behind))) }
+                LabelPosition { leader, ..LabelPosition::new(middle, gap + 2.0 * (1.0 - turned.dot(behind))) }
             })
         });
         let inside = [self.frame[0] + BADGE_MM, self.frame[1] - BADGE_MM];
         let own = Some(Owner::Body(light.number));
-        let place = places.take(Vec2::splat(2.0 * BADGE_MM), &ways.collect::<Vec<_>>(), own, f32::INFINITY);
-        let Place { middle, leader: line, .. } = place.unwrap_or(Place::new(nearest_in(inside, head), 0.0));
+        let position = layout.take(Vec2::splat(2.0 * BADGE_MM), &ways.collect::<Vec<_>>(), own, f32::INFINITY);
+        let LabelPosition { middle, leader: line, .. } =
+            position.unwrap_or(LabelPosition::new(nearest_in(inside, head), 0.0));
         let color = light.shown_color();
         out.extend(line.map(|line| leader(line, color)));
         out.extend(badge(middle, light.number, color));
@@ -116,37 +118,38 @@ impl PlacedView<'_> {
     fn draw_distance(
         &self,
         out: &mut Vec<Element>,
-        places: &mut LabelPlaces,
+        layout: &mut LabelLayout,
         light: &PlacedLight,
         font: &Font,
         units: Units,
     ) {
         let Some((target, floor_m)) = light.target else { return };
-        let (from, to) = (self.place(light.position), self.place(target));
+        let (from, to) = (self.on_page(light.position), self.on_page(target));
         if (to - from).length() < SHORT_MM {
             return;
         }
         let text = units.distance(floor_m);
         let size = label_size(font, &text);
         let ways = places_along([from, to], size);
-        let Some(place) = places.take(size, &ways, Some(Owner::Sight(light.number)), f32::INFINITY) else { return };
-        let area = area_around(place.middle, size);
+        let Some(position) = layout.take(size, &ways, Some(Owner::Sight(light.number)), f32::INFINITY) else { return };
+        let area = area_around(position.middle, size);
         if segment_meets(area, from, to) {
             out.push(Element::rect(area[0], size, Some([255; 3]), None));
         }
-        out.extend(place.leader.map(|line| leader(line, light.color)));
-        out.push(label(place.middle, text, light.color));
+        out.extend(position.leader.map(|line| leader(line, light.color)));
+        out.push(label(position.middle, text, light.color));
     }
 
     /// Draws the names of what is large enough for them: people's first, then those of the largest things.
-    fn draw_names(&self, out: &mut Vec<Element>, places: &mut LabelPlaces, font: &Font) {
+    fn draw_names(&self, out: &mut Vec<Element>, layout: &mut LabelLayout, font: &Font) {
         let mut things: Vec<&Outlined> = self.view.things.iter().collect();
         let area = |thing: &Outlined| (thing.high - thing.low).element_product();
         things.sort_by(|a, b| b.is_person.cmp(&a.is_person).then(area(b).total_cmp(&area(a))));
         for thing in things {
-            let (low, high) = (self.place(thing.low.max(self.view.low)), self.place(thing.high.min(self.view.high)));
+            let (low, high) =
+                (self.on_page(thing.low.max(self.view.low)), self.on_page(thing.high.min(self.view.high)));
             if low.cmple(high).all() && (high - low).max_element() >= LABEL_MM {
-                self.draw_name(out, places, font, (thing, [low, high]));
+                self.draw_name(out, layout, font, (thing, [low, high]));
             }
         }
     }
@@ -155,32 +158,32 @@ impl PlacedView<'_> {
     fn draw_name(
         &self,
         out: &mut Vec<Element>,
-        places: &mut LabelPlaces,
+        layout: &mut LabelLayout,
         font: &Font,
-        (thing, taken): (&Outlined, Area),
+        (thing, taken): (&Outlined, PageRect),
     ) {
         let text = font.fitted(&thing.name, LABEL_MM, NAME_MM);
         let size = label_size(font, &text);
-        let mut ways = places_around(taken, size);
+        let mut ways = positions_around(taken, size);
         if !thing.is_small() && !thing.is_person {
             ways.extend(places_within(taken, size));
         }
-        let points: Vec<Vec2> = thing.outlines.iter().flatten().map(|point| self.place(*point)).collect();
+        let points: Vec<Vec2> = thing.outlines.iter().flatten().map(|point| self.on_page(*point)).collect();
         for way in ways.iter_mut().filter(|way| nearest_in(taken, way.middle) != way.middle) {
             let distance = |point: &Vec2| (*point - way.middle).length_squared();
             let nearest = points.iter().min_by(|a, b| distance(a).total_cmp(&distance(b)));
             way.leader = nearest.and_then(|point| long_leader(area_around(way.middle, size), *point));
         }
         let most = if thing.is_person { f32::INFINITY } else { FAR_MM };
-        if let Some(place) = places.take(size, &ways, None, most).filter(|_| !text.is_empty()) {
-            out.extend(place.leader.map(|line| leader(line, GREY)));
-            out.push(label(place.middle, text, [90; 3]));
+        if let Some(position) = layout.take(size, &ways, None, most).filter(|_| !text.is_empty()) {
+            out.extend(position.leader.map(|line| leader(line, GREY)));
+            out.push(label(position.middle, text, [90; 3]));
         }
     }
 }
 
 /// Returns the line from a label to its thing, if that is not close by.
-fn long_leader(area: Area, thing: Vec2) -> Option<[Vec2; 2]> {
+fn long_leader(area: PageRect, thing: Vec2) -> Option<[Vec2; 2]> {
     let from = nearest_in(area, thing);
     ((thing - from).length() > LEADER_MM).then_some([from, thing])
 }
@@ -190,22 +193,22 @@ fn leader(line: [Vec2; 2], color: Rgb) -> Element {
     Element::line(line, Stroke::new(color, 0.15))
 }
 
-/// Returns places for a label of a size on a line and beside it, near its middle first.
-fn places_along([from, to]: [Vec2; 2], size: Vec2) -> Vec<Place> {
+/// Returns positions for a label of a size on a line and beside it, near its middle first.
+fn places_along([from, to]: [Vec2; 2], size: Vec2) -> Vec<LabelPosition> {
     const ASIDE: [(f32, f32); 7] =
         [(0.0, 0.0), (1.0, 2.0), (-1.0, 2.0), (2.5, 6.0), (-2.5, 6.0), (5.0, 12.0), (-5.0, 12.0)];
     let across = (to - from).perp().normalize_or(Vec2::Y);
     let aside_mm = 0.5 * across.abs().dot(size) + 0.2;
     let along = (0..=24).map(|step| 0.14 + 0.03 * step as f32);
-    let places = along.flat_map(|along| {
+    let positions = along.flat_map(|along| {
         let foot = from.lerp(to, along);
         ASIDE.map(|(aside, cost)| {
             let middle = foot + across * aside * aside_mm;
             let leader = long_leader(area_around(middle, size), foot);
-            Place { leader, ..Place::new(middle, cost + 8.0 * (along - 0.47).abs()) }
+            LabelPosition { leader, ..LabelPosition::new(middle, cost + 8.0 * (along - 0.47).abs()) }
         })
     });
-    places.collect()
+    positions.collect()
 }
 
 /// Returns the width and height of a label with a little space around it.
@@ -217,16 +220,16 @@ fn label(middle: Vec2, text: String, color: Rgb) -> Element {
     Element::text(middle + Vec2::Y * 0.36 * LABEL_MM, text, LABEL_MM).colored(color).aligned(Align::Center).into()
 }
 
-/// Returns places within a rectangle along its upper and its lower edge, the upper left corner first, with their costs.
-fn places_within([low, high]: Area, size: Vec2) -> Vec<Place> {
+/// Returns positions within a rectangle along its upper and its lower edge, the upper left corner first, with their costs.
+fn places_within([low, high]: PageRect, size: Vec2) -> Vec<LabelPosition> {
     const STEPS: u32 = 6;
     let (low, high) = (low + 0.5 * size + 0.8, high - 0.5 * size - 0.8);
     let along = (0..=STEPS).map(|step| step as f32 / STEPS as f32);
-    let places = along.flat_map(|part| {
+    let positions = along.flat_map(|part| {
         let x = low.x + (high.x - low.x) * part;
         [(Vec2::new(x, low.y), part), (Vec2::new(x, high.y), 1.5 + part)]
     });
-    places.filter(|_| low.cmple(high).all()).map(|(middle, cost)| Place::new(middle, cost - 1.0)).collect()
+    positions.filter(|_| low.cmple(high).all()).map(|(middle, cost)| LabelPosition::new(middle, cost - 1.0)).collect()
 }
 
 /// Draws the number of a light.

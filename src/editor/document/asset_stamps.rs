@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 pub struct AssetStamps(BTreeMap<PathBuf, FileStamp>);
 
 impl AssetStamps {
-    /// Adds the present states of those of the files whose states are not known. Reads them.
+    /// Reads the files whose states are not known, and adds their present states.
     pub fn add_new<'f>(&mut self, files: impl IntoIterator<Item = &'f PathBuf>) {
         for file in files {
             if !self.0.contains_key(file) {
@@ -25,7 +25,7 @@ impl AssetStamps {
         }
     }
 
-    /// Replaces the state of a file by that among others.
+    /// Replaces the state of a file by the one that it has in `from`, if it has one.
     pub fn restore(&mut self, file: &Path, from: &AssetStamps) {
         self.0.extend(from.0.get(file).map(|stamp| (file.to_owned(), stamp.clone())));
     }

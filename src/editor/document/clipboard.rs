@@ -8,7 +8,7 @@ use crate::scene::Scene;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-/// Begin of a comment with the path of an asset in the studio, and its file.
+/// Start of a comment with the path of an asset in the studio, and its file.
 const FILE_COMMENT: &str = "// file of an asset: ";
 
 /// Lights and objects from the clipboard.

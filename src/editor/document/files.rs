@@ -200,7 +200,7 @@ pub fn load_assets(
 /// Assets whose files another program has changed, read again.
 #[derive(Debug, Default)]
 pub struct RereadAssets {
-    /// The assets.
+    /// The assets that were read: those of changed files, and those that were missing and are there now.
     pub assets: Assets,
     /// The paths of their files in the studio.
     pub files: Vec<String>,

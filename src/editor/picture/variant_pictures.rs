@@ -150,6 +150,11 @@ impl VariantPictures {
         Some((id, self.others.get(&id)?))
     }
 
+    /// Notes that models or textures of the studio have other content now, for the shown picture and all others.
+    pub fn note_changed_assets(&mut self, rendering: &mut Rendering) {
+        self.others.values_mut().chain([rendering]).for_each(Rendering::note_changed_assets);
+    }
+
     /// Returns true if the picture of a variant that is not shown is there.
     pub fn has_picture(&self, id: VariantId) -> bool {
         self.others.get(&id).is_some_and(|other| other.texture().is_some())

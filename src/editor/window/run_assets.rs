@@ -66,7 +66,7 @@ impl App {
         self.session.asset_stamps = stamps;
         if !files.is_empty() {
             self.document.insert_assets(assets, &BTreeSet::new());
-            self.rendering.note_changed_assets();
+            self.variant_pictures.note_changed_assets(&mut self.rendering);
             self.toasts.info(format!("Changed by another program, and read again: {}.", files.join(", ")));
         }
         warnings.into_iter().for_each(|warning| self.toasts.warning(warning));
