@@ -160,7 +160,7 @@ const CROSSED: [Arm; 2] = [
         elbow_deg: 104.0,
         forearm_deg: 33.1,
         wrist_deg: 6.4,
-        fingers: 0.08,
+        fingers: 0.3,
     },
 ];
 const SUPPORTING: Arm = Arm { out_deg: 4.0, forward_deg: 34.0, twist_deg: -58.0, elbow_deg: 100.0, ..HANGING };
