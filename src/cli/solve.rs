@@ -4,8 +4,9 @@ use super::failure::Failure;
 use super::input::{self, StudioArguments};
 use super::terminal;
 use crate::io::{self, AssetFiles, Loaded};
+use crate::photo::light_dial_text;
 use crate::photo::meter::nearest_third;
-use crate::photo::text::{power_fraction, signed_stops};
+use crate::photo::text::signed_stops;
 use crate::photo::thirds::Dial;
 use crate::raytrace::{GeometryCache, RenderControl};
 use crate::scene::Scene;
@@ -181,14 +182,16 @@ fn table(scene: &Scene, setup: &SetupTransport, plan: &DialPlan) -> String {
     let _ = writeln!(text, "\n{:width$}  {:>8}  {:>8}", "light", "now", "dial");
     for dial in &plan.dials {
         let now = if dial.was_on { signed_stops(dial.from_stops) } else { "off".to_owned() };
-        let (then, part) = (signed_stops(dial.to_stops), power_fraction(dial.to_stops));
+        let then = signed_stops(dial.to_stops);
+        let light = scene.lights.iter().find(|light| light.id == dial.light);
+        let display = light.map_or_else(String::new, |light| light_dial_text(light, dial.to_stops));
         let at = setup.light(dial.light).map_or("", |light| match light.at {
             MeteredAt::Subject => "",
             MeteredAt::Rim => ", metered from behind",
             MeteredAt::Aim => ", metered where it aims",
         });
         let change = if dial.is_change() { "" } else { ", unchanged" };
-        let _ = writeln!(text, "{:width$}  {now:>8}  {then:>8}  ({part} of full power{at}{change})", dial.name);
+        let _ = writeln!(text, "{:width$}  {now:>8}  {then:>8}  ({display} on the head{at}{change})", dial.name);
     }
     let [before, after] = plan.energy_lm_s;
     if before > 0.0 && after > 0.0 {

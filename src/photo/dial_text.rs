@@ -1,7 +1,7 @@
 //! The display of a head's dial as text, and back.
 
 use super::text::{signed_stops, three_digits};
-use crate::scene::{DialScale, HeadDial};
+use crate::scene::{DialScale, HeadDial, Light};
 
 /// Settings a stop of a dial in thirds.
 const THIRDS: u8 = 3;
@@ -21,6 +21,14 @@ pub fn dial_text(dial: &HeadDial, stops: f32) -> String {
             }
         }
     }
+}
+
+/// Formats a setting of a light's dial as its head displays it. Where the head is not known, as most do: a flash in
+/// fractions and tenths of a stop, a lamp in per cent.
+pub fn light_dial_text(light: &Light, stops: f32) -> String {
+    let scale = if light.power.output.is_flash() { DialScale::Fractions } else { DialScale::PerCent };
+    let usual = HeadDial { scale, ..HeadDial::UNKNOWN };
+    dial_text(light.head.as_ref().map_or(&usual, |head| &head.dial), stops)
 }
 
 /// Formats the duration of a flash: `1/500 s`.
@@ -70,6 +78,7 @@ pub fn dial_from_text(dial: &HeadDial, text: &str) -> Option<f32> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scene::{Emitter, Output};
 
     fn dial(scale: DialScale, steps_per_stop: u8) -> HeadDial {
         HeadDial { scale, lowest_stops: -8.0, steps_per_stop }
@@ -87,6 +96,17 @@ mod tests {
         assert_eq!(dial_text(&dial(DialScale::WattSeconds { full: 400.0 }, 10), -2.0), "100 Ws");
         let led = dial(DialScale::PerCent, 1);
         assert_eq!([0.0, -2.0, -6.0].map(|s| dial_text(&led, s)), ["100 %", "25 %", "1.6 %"]);
+    }
+
+    #[test]
+    fn a_flash_of_no_known_head_reads_in_fractions_and_a_lamp_in_per_cent() {
+        let flash = Output::FlashWs { energy_ws: 400.0, efficacy_lm_s_per_ws: 40.0 };
+        let [flash, lamp] = [flash, Output::Lumens(800.0)].map(|output| Light::new(Emitter::Point, output));
+        assert_eq!(
+            [0.0, -2.0, -2.8, -5.9].map(|s| light_dial_text(&flash, s)),
+            ["1/1", "1/4", "1/8 +0.2", "1/64 +0.1"]
+        );
+        assert_eq!([0.0, -1.0, -5.9].map(|s| light_dial_text(&lamp, s)), ["100 %", "50 %", "1.7 %"]);
     }
 
     #[test]

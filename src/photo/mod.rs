@@ -25,7 +25,7 @@ pub mod thirds;
 mod waveform;
 
 pub use aov::AovPicture;
-pub use dial_text::{dial_from_text, dial_text, flash_time_text};
+pub use dial_text::{dial_from_text, dial_text, flash_time_text, light_dial_text};
 pub use environment_light::{EnvironmentLight, EnvironmentSun};
 pub use false_color::{FALSE_STOPS, false_color};
 pub use lazy_picture::LazyPicture;

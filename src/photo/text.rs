@@ -1,4 +1,4 @@
-//! Numbers as text: stops, quantities, fractions of full power.
+//! Numbers as text: stops and quantities.
 
 /// Formats stops with their sign: `+0.3`, `-2.0`, `0.0`.
 pub fn signed_stops(stops: f32) -> String {
@@ -22,24 +22,9 @@ pub fn three_digits(value: f32) -> String {
     }
 }
 
-/// Formats the fraction of full power: `1/4` for whole stops, else a percentage.
-pub fn power_fraction(stops: f32) -> String {
-    let whole = stops.round();
-    match stops {
-        s if (s - whole).abs() < 0.02 && whole <= 0.0 && whole > -16.0 => format!("1/{}", (-whole).exp2()),
-        s => format!("{} %", three_digits(s.exp2() * 100.0)),
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn power_fractions_are_formatted_as_on_a_flash_head() {
-        assert_eq!([0.0, -1.0, -4.0].map(power_fraction), ["1/1", "1/2", "1/16"]);
-        assert_eq!(power_fraction(-0.5), "70.7 %");
-    }
 
     #[test]
     fn stops_and_numbers_read_well() {

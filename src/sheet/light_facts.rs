@@ -2,8 +2,8 @@
 
 use super::lengths::Units;
 use crate::photo::meter::nearest_third;
-use crate::photo::text::{power_fraction, signed_stops, three_digits};
-use crate::photo::{LightBearing, dial_text};
+use crate::photo::text::{signed_stops, three_digits};
+use crate::photo::{LightBearing, light_dial_text};
 use crate::raytrace::RenderControl;
 use crate::scene::{
     ColorSource, Emitter, Gel, Light, Modifier, ModifierKind, ModifierShape, NamedModifier, Output, Role,
@@ -85,7 +85,7 @@ impl LightFacts {
             is_on: light.on,
             modifier: modifier_text(light, units),
             head: head_text(light, units),
-            dial_text: light_dial_text(light),
+            dial_text: light_dial_text(light, light.power.dial_stops),
             dial_stops: light.power.dial_stops,
             dialled: output_text(&light.power.output, light.power.dial_stops, units),
             bearing,
@@ -231,12 +231,6 @@ fn head_text(light: &Light, units: Units) -> String {
     };
     let gel = gel_text(&light.color.gel).map(|gel| format!(", {gel}")).unwrap_or_default();
     format!("{}, {color}{gel}", head_name(light, units))
-}
-
-/// Returns the setting of a light's dial as its head displays it; a fraction or a percentage where the head is not known.
-fn light_dial_text(light: &Light) -> String {
-    let stops = light.power.dial_stops;
-    light.head.as_ref().map_or_else(|| power_fraction(stops), |head| dial_text(&head.dial, stops))
 }
 
 /// Returns the name of a light's head, or its kind with its full power where it is not known.

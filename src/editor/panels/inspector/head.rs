@@ -5,9 +5,9 @@ use crate::editor::panels::gear::head_text;
 use crate::editor::ui::theme;
 use crate::editor::ui::widgets::{self, fact, row};
 use crate::gear::{GearList, HeadModel, gear_use};
-use crate::photo::text::{power_fraction, signed_stops};
+use crate::photo::text::signed_stops;
 use crate::photo::thirds::Dial;
-use crate::photo::{dial_from_text, dial_text};
+use crate::photo::{dial_from_text, dial_text, light_dial_text};
 use crate::scene::{Assets, BeyondDial, Head, HeadDial, Light, Output, Scene};
 use eframe::egui::{ComboBox, Label, RichText, Slider, SliderClamping, Ui};
 
@@ -99,6 +99,7 @@ pub(super) fn dial_rows(ui: &mut Ui, scene: &Scene, assets: &Assets, light: &mut
         }
     });
     row(ui, "", "", |ui| {
+        let display = light_dial_text(light, light.power.dial_stops);
         let stops = &mut light.power.dial_stops;
         ui.spacing_mut().item_spacing.x = 2.0;
         for (sign, name, thirds) in
@@ -112,7 +113,7 @@ pub(super) fn dial_rows(ui: &mut Ui, scene: &Scene, assets: &Assets, light: &mut
         ui.add_space(6.0);
         let (part, tip) = match head {
             Some(_) => (format!("{} stops", signed_stops(*stops)), "From full power"),
-            None => (power_fraction(*stops), "The part of full power"),
+            None => (display, "As most heads display it"),
         };
         ui.add(Label::new(RichText::new(part).weak())).on_hover_text(tip);
         ui.add_space(6.0);
@@ -125,15 +126,19 @@ pub(super) fn dial_rows(ui: &mut Ui, scene: &Scene, assets: &Assets, light: &mut
             light.power.dial_stops = head.map_or(metered, |dial| dial.nearest(metered));
         }
     });
-    if let Some(text) = head.and_then(|dial| beyond_text(&dial, light.power.dial_stops)) {
+    if let Some(text) = beyond_text(head.as_ref(), light.power.dial_stops) {
         row(ui, "", "", |ui| ui.add(Label::new(RichText::new(text).color(theme::accent(ui)).small()).wrap()));
     }
 }
 
-/// Returns a sentence about a setting that the head does not have; none if it has it.
-fn beyond_text(dial: &HeadDial, stops: f32) -> Option<String> {
-    Some(match dial.beyond(stops)? {
-        BeyondDial::Full => "More than the head's full power".to_owned(),
-        BeyondDial::Lowest => format!("Less than {}, the lowest of the head", dial_text(dial, dial.lowest_stops)),
-    })
+/// Returns a sentence about a setting that the head does not have; none if it has it. Of a head that is not known only full
+/// power is.
+fn beyond_text(head: Option<&HeadDial>, stops: f32) -> Option<String> {
+    match (head.unwrap_or(&HeadDial::UNKNOWN).beyond(stops)?, head) {
+        (BeyondDial::Full, _) => Some("More than full power".to_owned()),
+        (BeyondDial::Lowest, Some(dial)) => {
+            Some(format!("Less than {}, the lowest of the head", dial_text(dial, dial.lowest_stops)))
+        }
+        (BeyondDial::Lowest, None) => None,
+    }
 }
