@@ -16,11 +16,12 @@ use crate::setup::{MeteredAt, MeteredSetup};
 /// The check of a set-up that has none.
 const NOTHING: &str = "Nothing that a plan can see.";
 
-/// The places between which the distances of plan and table are measured.
-pub const DISTANCES: [&str; 2] = [
+/// The places between which the lengths in drawings and table are measured.
+pub const MEASURES: [&str; 2] = [
     "Distances in the plan: along the floor, from under the middle of a light's front to under the red ring (the subject) \
      or what the light aims at.",
-    "Distances in the table: straight through the air, as a tape pulled from the middle of the front to the same point.",
+    "Distances in the table: straight, as a tape from the middle of the front to the same point. Heights: of that middle \
+     over the floor.",
 ];
 
 /// A light of a sheet.

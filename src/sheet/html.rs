@@ -1,6 +1,6 @@
 //! The sheet as a web page in one file: its tables become cards on a phone.
 
-use super::content::{DISTANCES, SheetContent};
+use super::content::{MEASURES, SheetContent};
 use super::font::Font;
 use super::light_facts::COLUMNS;
 use super::page::view_drawing;
@@ -56,7 +56,7 @@ pub fn html(content: &SheetContent, picture: &str, font: &Font) -> String {
         let drawing = svg(&view_drawing(content, index, VIEW_MM, font), picture, &format!("view{index}-"));
         let _ = writeln!(out, "<div><h2>{}</h2>\n{drawing}</div>", escaped(heading));
     }
-    let _ = writeln!(out, "</div>\n<p class=\"about\">{}</p>", escaped(&DISTANCES.join(" ")));
+    let _ = writeln!(out, "</div>\n<p class=\"about\">{}</p>", escaped(&MEASURES.join(" ")));
     out += "<h2>Lights</h2>\n<table>\n<thead><tr>";
     for heading in COLUMNS {
         let _ = write!(out, "<th>{heading}</th>");

@@ -1,6 +1,6 @@
 //! The sheet on a page of A4: picture, facts, plan, elevation, lights, gear and checks.
 
-use super::content::{DISTANCES, SheetContent};
+use super::content::{MEASURES, SheetContent};
 use super::drawing::{Align, Drawing, Element, Stroke};
 use super::font::Font;
 use super::light_facts::COLUMNS;
@@ -253,7 +253,7 @@ impl Page<'_> {
             self.elements.extend(view.elements(at, mm_per_m, self.font, self.content.units));
             self.elements.extend(ruler(vec2(left, bottom + 1.4), mm_per_m, self.content.units));
         }
-        for (index, line) in DISTANCES.into_iter().enumerate() {
+        for (index, line) in MEASURES.into_iter().enumerate() {
             self.grey(vec2(MARGIN_MM, bottom + 6.4 + 2.9 * index as f32), line, SMALL_MM);
         }
         bottom + UNDER_VIEWS_MM + 0.5 * GAP_MM

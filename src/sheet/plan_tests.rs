@@ -1,6 +1,6 @@
 //! What is drawn in plans and elevations, for the shipped studios and a small one.
 
-use super::content::{DISTANCES, SheetContent};
+use super::content::{MEASURES, SheetContent};
 use super::drawing::{Align, Drawing, Element, Text};
 use super::font::Font;
 use super::label_layout::{PageRect, contains, corners, segment_meets};
@@ -96,16 +96,22 @@ fn one_light(position: Vec3) -> Scene {
     scene
 }
 
-#[test]
-fn distances_of_a_plan_are_along_the_floor_and_the_sheet_says_so() {
-    // 2 m away on the floor, and 1.5 m up
-    let scene = one_light(Vec3::new(2.0, 2.5, 0.0));
-    let (elements, _) = drawn(&scene, &Assets::default(), ViewFrom::Above);
-    let texts = elements.iter().filter_map(|element| match element {
-        Element::Text(text) => Some(text.text.as_str()),
+/// Returns the lengths that are written in a view.
+fn lengths(scene: &Scene, from: ViewFrom) -> Vec<String> {
+    let (elements, _) = drawn(scene, &Assets::default(), from);
+    let texts = elements.into_iter().filter_map(|element| match element {
+        Element::Text(text) => Some(text.text),
         _ => None,
     });
-    assert_eq!(texts.filter(|text| text.ends_with(" m")).collect::<Vec<_>>(), ["2.00 m"]);
+    texts.filter(|text| text.ends_with(" m")).collect()
+}
+
+#[test]
+fn distances_are_along_the_floor_heights_over_it_and_the_sheet_says_so() {
+    // 2 m away on the floor, and 1.5 m up
+    let scene = one_light(Vec3::new(2.0, 2.5, 0.0));
+    assert_eq!(lengths(&scene, ViewFrom::Above), ["2.00 m"]);
+    assert_eq!(lengths(&scene, ViewFrom::Side), ["2.50 m"], "the height in the elevation");
     let (cache, control) = (GeometryCache::default(), RenderControl::new());
     let picture = Picture { width: 6, height: 4, rgb: vec![[0.18; 3]; 24] };
     let gear = bundled_gear();
@@ -113,7 +119,7 @@ fn distances_of_a_plan_are_along_the_floor_and_the_sheet_says_so() {
     let content = content.unwrap().unwrap();
     assert_eq!(content.lights[0].facts.cells()[3][1], "straight to subject");
     let Drawing { elements, size_mm } = page(&content, &Font::new().unwrap());
-    for note in DISTANCES {
+    for note in MEASURES {
         let found = elements.iter().find_map(|element| match element {
             Element::Text(text) if text.text == note => Some(area_of(text, &Font::new().unwrap())),
             _ => None,

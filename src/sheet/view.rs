@@ -271,6 +271,11 @@ impl PlacedLight {
         if self.is_on { self.color } else { GREY }
     }
 
+    /// Returns the height of the middle of its front over the floor, metres, in an elevation.
+    pub(super) fn height_m(&self) -> f32 {
+        -self.position.y
+    }
+
     /// Returns the lines from its front to what it is measured to, in a plan, and to its aim where that is elsewhere;
     /// the second lines are true for the aim.
     pub(super) fn sight_lines(&self, from: ViewFrom) -> impl Iterator<Item = ([Vec2; 2], bool)> {

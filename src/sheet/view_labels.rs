@@ -1,4 +1,5 @@
-//! The labels of a view: the numbers of lights, and in a plan their distances along the floor and the names of things.
+//! The labels of a view: the numbers of lights, in a plan their distances along the floor and the names of things, in an
+//! elevation their heights.
 
 use super::drawing::{Align, Element, Rgb, Stroke};
 use super::font::Font;
@@ -49,13 +50,21 @@ impl PlacedView<'_> {
         points.iter().map(|point| self.on_page(*point)).collect()
     }
 
-    /// Returns the labels: numbers first, then distances, then names.
+    /// Returns the labels: numbers first, then distances or heights, then names.
     pub fn labels(&self, font: &Font, units: Units) -> Vec<Element> {
         let mut layout = self.marks();
         let mut out = Vec::new();
         self.view.lights.iter().for_each(|light| self.draw_number(&mut out, &mut layout, light));
+        for light in &self.view.lights {
+            let length = match self.view.from {
+                ViewFrom::Above => light.target.map(|(target, floor_m)| ([light.position, target], floor_m)),
+                ViewFrom::Side => Some(([light.foot, light.head], light.height_m())),
+            };
+            if let Some((line, length_m)) = length {
+                self.draw_length(&mut out, &mut layout, light, (line, &units.distance(length_m)), font);
+            }
+        }
         if self.view.from == ViewFrom::Above {
-            self.view.lights.iter().for_each(|light| self.draw_distance(&mut out, &mut layout, light, font, units));
             self.draw_names(&mut out, &mut layout, font);
         }
         out
@@ -88,6 +97,9 @@ impl PlacedView<'_> {
                 false => layout.add(vec![outline], Overlap::Reluctant, body),
             }
             light.sight_lines(view.from).for_each(|(line, _)| layout.add_line(self.path(&line), sight));
+            if view.from == ViewFrom::Side {
+                layout.add_line(self.path(&[light.foot, light.head]), sight);
+            }
         }
         layout
     }
@@ -114,30 +126,29 @@ impl PlacedView<'_> {
         out.extend(badge(middle, light.number, color));
     }
 
-    /// Draws the distance along the floor to what a light is measured to, on its line or beside it.
-    fn draw_distance(
+    /// Draws the length of a light's line on it or beside it.
+    fn draw_length(
         &self,
         out: &mut Vec<Element>,
         layout: &mut LabelLayout,
         light: &PlacedLight,
+        (line, text): ([Vec2; 2], &str),
         font: &Font,
-        units: Units,
     ) {
-        let Some((target, floor_m)) = light.target else { return };
-        let (from, to) = (self.on_page(light.position), self.on_page(target));
+        let [from, to] = line.map(|point| self.on_page(point));
         if (to - from).length() < SHORT_MM {
             return;
         }
-        let text = units.distance(floor_m);
-        let size = label_size(font, &text);
+        let size = label_size(font, text);
         let ways = places_along([from, to], size);
         let Some(position) = layout.take(size, &ways, Some(Owner::Sight(light.number)), f32::INFINITY) else { return };
         let area = area_around(position.middle, size);
         if segment_meets(area, from, to) {
             out.push(Element::rect(area[0], size, Some([255; 3]), None));
         }
-        out.extend(position.leader.map(|line| leader(line, light.color)));
-        out.push(label(position.middle, text, light.color));
+        let color = light.shown_color();
+        out.extend(position.leader.map(|line| leader(line, color)));
+        out.push(label(position.middle, text.to_owned(), color));
     }
 
     /// Draws the names of what is large enough for them: people's first, then those of the largest things.

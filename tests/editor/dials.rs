@@ -63,6 +63,23 @@ fn wishes_that_cannot_be_met_or_read_are_named() {
 }
 
 #[test]
+fn a_flash_of_no_known_head_reads_as_heads_do_and_more_than_full_power_is_told() {
+    let Some(mut window) = preset_window() else { return };
+    let key = Item::Light(scene(&window).lights[0].id);
+    select(&mut window, &[key]);
+    settle(&mut window);
+    let mut turn_to = |stops: f64| {
+        window.get_by_role_and_label(egui::accesskit::Role::Slider, "Dial").set_value_accesskit(stops);
+        settle(&mut window);
+        assert!((f64::from(scene(&window).lights[0].power.dial_stops) - stops).abs() < 1e-4);
+        let is_shown = |text: &str| window.query_by_label(text).is_some();
+        ["1/8 +0.2", "1/1 +0.8", "More than full power"].map(is_shown)
+    };
+    assert_eq!(turn_to(-2.8), [true, false, false]);
+    assert_eq!(turn_to(0.8), [false, true, true]);
+}
+
+#[test]
 fn the_rooms_part_in_the_light_is_listed_for_every_light() {
     let Some(mut window) = preset_window() else { return };
     window.state_mut().run(Command::ToggleRoomAudit, None, &egui::Context::default());
