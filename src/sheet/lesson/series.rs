@@ -1,10 +1,10 @@
 //! The studios of a lesson.
 
 use crate::jobs::{FaceLighting, check_patterns, faces_in_view};
-use crate::photo::LightBearing;
 use crate::photo::exposure;
 use crate::photo::meter::{Reading, nearest_third};
-use crate::photo::text::{signed_hundredths, signed_stops};
+use crate::photo::text::signed_hundredths;
+use crate::photo::{LightBearing, light_dial_text};
 use crate::raytrace::{GeometryCache, PrepareError, RenderControl};
 use crate::scene::{Aim, Assets, Light, LightId, Material, NamedModifier, Room, Scene};
 use crate::setup::MeteredSetup;
@@ -290,12 +290,11 @@ impl Studio<'_> {
 
     /// Returns the note of a light that is exposed for the camera: its dial.
     fn exposed_note(&self, scene: &Scene) -> String {
-        let dial = scene.lights.iter().find(|light| light.on).map_or(0.0, |light| light.power.dial_stops);
         let number = nearest_third(scene.camera.f_number);
-        if dial > 0.0 {
-            format!("{number} takes {:.1} stops more than full power", dial)
-        } else {
-            format!("{number} at {} stops", signed_stops(dial))
+        let Some(light) = scene.lights.iter().find(|light| light.on) else { return number };
+        match light.power.dial_stops {
+            stops if stops > 0.0 => format!("{number} takes {stops:.1} stops more than full power"),
+            stops => format!("{number} at {}", light_dial_text(light, stops)),
         }
     }
 
