@@ -53,7 +53,7 @@ impl Surface {
         self.textures.iter().any(Option::is_some)
     }
 
-    /// Returns true if the surface is not all there.
+    /// Returns true if the surface is masked or blended.
     pub fn has_holes(&self) -> bool {
         self.material.alpha != Alpha::Opaque && self.material.transmission <= 0.0
     }
@@ -142,7 +142,7 @@ impl SceneGeometry {
         self.instances.push(MeshInstance { mesh, world_from_object, object, first_surface, state, batches });
     }
 
-    /// Returns true if some surface is not all there.
+    /// Returns true if some surface is masked or blended.
     pub fn has_holes(&self) -> bool {
         self.surfaces.iter().any(Surface::has_holes)
     }

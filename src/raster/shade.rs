@@ -87,7 +87,7 @@ pub(super) struct FrameShading {
     materials: Vec<ShadingMaterial>,
     /// Linear value of each sRGB byte.
     linear_from_srgb: [f32; 256],
-    /// Some surface is not all there.
+    /// Some surface is masked or blended.
     has_holes: bool,
 }
 
@@ -238,7 +238,7 @@ impl<'a> FragmentShader<'a> {
     }
 
     /// Returns a test of a triangle's pixels, by their barycentric coordinates over w and their place; none for a surface
-    /// that is all there.
+    /// that is opaque.
     pub fn hole_test(&self, id: TriangleId) -> Option<impl Fn(Vec3, (usize, usize)) -> bool> {
         let surface = Some(&self.geometry.surfaces[id.surface as usize]).filter(|surface| surface.has_holes())?;
         let mesh = &self.geometry.instances[surface.instance as usize].mesh;

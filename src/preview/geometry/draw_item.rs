@@ -18,7 +18,7 @@ pub(crate) struct DrawItem {
     pub surface: u32,
     /// Keys of the cached textures, by slot.
     pub textures: TextureKeys,
-    /// The surface is not all there.
+    /// The surface is masked or blended.
     pub has_holes: bool,
     /// A dome lies over its textures.
     pub has_dome: bool,

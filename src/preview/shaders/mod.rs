@@ -19,7 +19,7 @@ pub(crate) const SHADOW_STRANDS: &str =
 /// The shadow map pass.
 pub(crate) const SHADOW_MAP: &str =
     concat!(include_str!("scene.wgsl"), include_str!("draw.wgsl"), include_str!("shadow_map.wgsl"));
-/// The shadow map pass of surfaces that are not all there.
+/// The shadow map pass of masked and blended surfaces.
 pub(crate) const SHADOW_HOLES: &str = concat!(
     "const TEXTURE_GROUP: u32 = 3;\n",
     include_str!("scene.wgsl"),

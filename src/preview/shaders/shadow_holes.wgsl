@@ -1,4 +1,4 @@
-// The shadow map pass of surfaces that are not all there: masked and blended ones.
+// The shadow map pass of masked and blended surfaces.
 
 struct View {
     clip_from_world: mat4x4f,

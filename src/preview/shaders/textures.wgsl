@@ -52,7 +52,7 @@ fn from_top(uv: vec2f) -> vec2f {
     return vec2f(uv.x, 1.0 - uv.y);
 }
 
-// Returns the part of the surface that is there, for the alpha of the base colour's texture; twin of `Alpha::coverage`.
+// Returns the part of the surface that covers what is behind it, for the alpha of the base colour's texture; twin of `Alpha::coverage`.
 fn coverage(alpha: f32) -> f32 {
     return select(saturate(alpha * draw.maps.z), select(0.0, 1.0, alpha >= draw.maps.y), draw.maps.y >= 0.0);
 }

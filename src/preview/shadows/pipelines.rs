@@ -13,7 +13,7 @@ use eframe::wgpu;
 pub(crate) struct ShadowPipelines {
     /// Shadow maps without face culling, with front faces culled, with back faces culled.
     map: [wgpu::RenderPipeline; 3],
-    /// Shadow maps of surfaces that are not all there, without face culling.
+    /// Shadow maps of masked and blended surfaces, without face culling.
     map_with_holes: wgpu::RenderPipeline,
     /// Raw masks, by whether an emitter is subdivided.
     pub raw_mask: [wgpu::RenderPipeline; 2],
