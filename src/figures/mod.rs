@@ -27,6 +27,7 @@ mod last_results;
 mod makehuman;
 mod materials;
 mod morph;
+mod named_expressions;
 mod named_poses;
 mod patch;
 mod posed_body;
@@ -51,7 +52,8 @@ pub use materials::{
     CLOTH_COLORS, ClothColor, EYE_COLORS, EyeColor, HAIR_COLORS, SKIN_TONES, SkinTone, default_parts, give_cloth_color,
     give_eyes, give_hair, give_skin, iris_textures,
 };
-pub use named_poses::{NamedExpression, NamedPose};
+pub use named_expressions::NamedExpression;
+pub use named_poses::NamedPose;
 pub use ready::{READY, ReadyFigure, randomised};
 pub use skeleton::Side;
 pub use skin_textures::{builtin_texture, skin_textures};

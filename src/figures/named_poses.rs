@@ -1,6 +1,6 @@
-//! Named poses and expressions.
+//! Named poses.
 
-use crate::scene::{Arm, Expression, Leg, Pose, Torso};
+use crate::scene::{Arm, Leg, Pose, Torso};
 
 /// A pose with a name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -110,8 +110,8 @@ impl NamedPose {
             NamedPose::ThreeQuarter => turned(relaxed, 25.0, 12.0, -30.0),
             NamedPose::OverShoulder => turned(relaxed, 55.0, 25.0, -70.0),
             NamedPose::ArmsCrossed => Pose { arms: CROSSED, ..standing },
-            NamedPose::HandsJoined => Pose { arms: [JOINED; 2], ..standing },
-            NamedPose::HandsBehind => Pose { arms: [BEHIND; 2], ..standing },
+            NamedPose::HandsJoined => Pose { arms: JOINED, ..standing },
+            NamedPose::HandsBehind => Pose { arms: BEHIND, ..standing },
             NamedPose::HandAtChin => Pose { arms: [SUPPORTING, AT_CHIN], ..relaxed },
             NamedPose::HandInHair => Pose { arms: [relaxed.arms[0], IN_HAIR], ..relaxed },
             NamedPose::Walking => walking(),
@@ -163,13 +163,85 @@ const CROSSED: [Arm; 2] = [
         fingers: 0.3,
     },
 ];
-const SUPPORTING: Arm = Arm { out_deg: 4.0, forward_deg: 34.0, twist_deg: -58.0, elbow_deg: 100.0, ..HANGING };
-const JOINED: Arm = Arm { out_deg: 4.0, forward_deg: 14.0, twist_deg: -38.0, elbow_deg: 52.0, fingers: 0.4, ..HANGING };
-const BEHIND: Arm = Arm { out_deg: 12.0, forward_deg: -36.0, twist_deg: -75.0, elbow_deg: 52.0, ..HANGING };
-const AT_CHIN: Arm =
-    Arm { out_deg: 2.0, forward_deg: 52.0, twist_deg: -22.0, elbow_deg: 138.0, fingers: 0.55, ..HANGING };
-const IN_HAIR: Arm =
-    Arm { out_deg: 105.0, forward_deg: 30.0, twist_deg: 70.0, elbow_deg: 140.0, fingers: 0.3, ..HANGING };
+/// The palm lies under the right elbow.
+const SUPPORTING: Arm = Arm {
+    shoulder_deg: -7.0,
+    out_deg: 2.0,
+    forward_deg: 28.0,
+    twist_deg: -70.0,
+    elbow_deg: 89.5,
+    forearm_deg: 85.0,
+    wrist_deg: 3.5,
+    fingers: 0.35,
+};
+/// The right hand lies on the back of the left one, before the belly.
+const JOINED: [Arm; 2] = [
+    Arm {
+        shoulder_deg: -1.5,
+        out_deg: 19.0,
+        forward_deg: 10.0,
+        twist_deg: -69.5,
+        elbow_deg: 68.0,
+        forearm_deg: 18.5,
+        wrist_deg: -13.0,
+        fingers: 0.3,
+    },
+    Arm {
+        shoulder_deg: 12.0,
+        out_deg: 15.0,
+        forward_deg: 8.5,
+        twist_deg: -64.0,
+        elbow_deg: 68.5,
+        forearm_deg: 0.0,
+        wrist_deg: -8.5,
+        fingers: 0.2,
+    },
+];
+/// The back of the right hand lies in the left palm, behind the lower back.
+const BEHIND: [Arm; 2] = [
+    Arm {
+        shoulder_deg: -10.0,
+        out_deg: 16.5,
+        forward_deg: -23.0,
+        twist_deg: -90.0,
+        elbow_deg: 57.0,
+        forearm_deg: 7.5,
+        wrist_deg: 22.0,
+        fingers: 0.35,
+    },
+    Arm {
+        shoulder_deg: -3.0,
+        out_deg: 23.5,
+        forward_deg: -29.0,
+        twist_deg: -76.5,
+        elbow_deg: 61.0,
+        forearm_deg: 23.0,
+        wrist_deg: 20.0,
+        fingers: 0.3,
+    },
+];
+/// The bent index finger lies at the chin: of a woman below it, of a man beside it.
+const AT_CHIN: Arm = Arm {
+    shoulder_deg: -1.0,
+    out_deg: -0.5,
+    forward_deg: 59.5,
+    twist_deg: -18.0,
+    elbow_deg: 138.5,
+    forearm_deg: -26.5,
+    wrist_deg: -20.5,
+    fingers: 0.65,
+};
+/// The palm lies on the back of the head, over the ear.
+const IN_HAIR: Arm = Arm {
+    shoulder_deg: 2.5,
+    out_deg: 134.0,
+    forward_deg: 36.5,
+    twist_deg: 53.0,
+    elbow_deg: 138.0,
+    forearm_deg: 38.0,
+    wrist_deg: 52.0,
+    fingers: 0.15,
+};
 const UP: Arm = Arm { out_deg: 160.0, forward_deg: 10.0, elbow_deg: 20.0, fingers: 0.1, ..HANGING };
 const WAVING: Arm =
     Arm { out_deg: 80.0, forward_deg: 15.0, twist_deg: 88.0, elbow_deg: 110.0, fingers: 0.05, ..HANGING };
@@ -278,68 +350,23 @@ fn high_stool() -> Pose {
     }
 }
 
-/// An expression with a name.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum NamedExpression {
-    /// Relaxed.
-    Neutral,
-    /// Mouth closed.
-    SoftSmile,
-    /// Teeth shown.
-    Smile,
-    /// Mouth open.
-    Laugh,
-    /// Brows down a little, lips together.
-    Serious,
-    /// Lids closed.
-    EyesClosed,
-}
-
-impl NamedExpression {
-    /// All expressions, in list order.
-    pub const ALL: [NamedExpression; 6] = [
-        NamedExpression::Neutral,
-        NamedExpression::SoftSmile,
-        NamedExpression::Smile,
-        NamedExpression::Laugh,
-        NamedExpression::Serious,
-        NamedExpression::EyesClosed,
-    ];
-
-    /// Returns the label in lists.
-    pub fn label(self) -> &'static str {
-        match self {
-            NamedExpression::Neutral => "Neutral",
-            NamedExpression::SoftSmile => "Soft smile",
-            NamedExpression::Smile => "Smile",
-            NamedExpression::Laugh => "Laugh",
-            NamedExpression::Serious => "Serious",
-            NamedExpression::EyesClosed => "Eyes closed",
-        }
-    }
-
-    /// Returns the expression.
-    pub fn expression(self) -> Expression {
-        let neutral = Expression::default();
-        match self {
-            NamedExpression::Neutral => neutral,
-            NamedExpression::SoftSmile => Expression { smile: 0.4, ..neutral },
-            NamedExpression::Smile => Expression { smile: 0.7, teeth: 0.55, ..neutral },
-            NamedExpression::Laugh => Expression { smile: 0.85, teeth: 0.7, mouth_open: 0.3, squint: 0.2, ..neutral },
-            NamedExpression::Serious => Expression { brows_down: 0.15, lips_pressed: 0.25, eyes_wide: 0.4, ..neutral },
-            NamedExpression::EyesClosed => Expression { eyes_closed: 1.0, ..neutral },
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::figures::BodyData;
+    use crate::figures::patch::Patch;
     use crate::figures::posed_body::PosedBody;
     use crate::figures::regions::{Edges, Place};
     use crate::scene::{Body, Figure};
     use glam::Vec3;
+
+    /// Sex, height in metres and weight of bodies: usual, thin and heavy.
+    const BODIES: [(f32, f32, f32); 4] = [(0.0, 1.66, 0.45), (1.0, 1.8, 0.5), (1.0, 1.82, 0.3), (1.0, 1.78, 0.8)];
+    /// Distance from a vertex of a part within which a point may be in the part, metres: more than half of an edge.
+    const NEAR_M: f32 = 0.02;
+
+    /// Height of the neck on the trunk, as in [`Place::Trunk`].
+    const NECK_HEIGHT: f32 = 1.08;
 
     /// Returns the vertices of a posed body at places of one side, left or right.
     fn part(body: &PosedBody, is_left: bool, is_in: impl Fn(Place) -> bool) -> Vec<Vec3> {
@@ -348,12 +375,12 @@ mod tests {
         (0..data.positions.len()).filter(is_in).map(|v| body.positions[v]).collect()
     }
 
-    /// Returns the distance within which a tenth of some vertices lie from others, metres.
-    fn nearest_tenth_m(vertices: &[Vec3], others: &[Vec3]) -> f32 {
+    /// Returns the distance within which a share of some vertices lie from others, metres.
+    fn nearest_m(vertices: &[Vec3], others: &[Vec3], share: f32) -> f32 {
         let nearest = |v: &Vec3| others.iter().map(|other| v.distance(*other)).fold(f32::INFINITY, f32::min);
         let mut distances: Vec<f32> = vertices.iter().map(nearest).collect();
         distances.sort_by(f32::total_cmp);
-        distances[distances.len() / 10]
+        distances[(distances.len() as f32 * share) as usize]
     }
 
     #[test]
@@ -362,17 +389,71 @@ mod tests {
         let hand = |place: Place| matches!(place, Place::Arm(at) if at >= 2.0);
         let trunk = |place: Place| matches!(place, Place::Trunk { .. });
         // Vertices are up to 3 cm apart
-        for (sex, height_m, weight) in [(0.0, 1.66, 0.45), (1.0, 1.8, 0.5), (1.0, 1.82, 0.3), (1.0, 1.78, 0.8)] {
+        for (sex, height_m, weight) in BODIES {
             let figure = Figure { body: Body { sex, height_m, weight, ..Body::default() }, ..Figure::default() };
             let posed =
                 |named: NamedPose| PosedBody::new(BodyData::shipped(), &Figure { pose: named.pose(), ..figure });
             let body = posed(NamedPose::ArmsCrossed);
-            let over = nearest_tenth_m(&part(&body, false, hand), &part(&body, true, upper_arm));
-            let under = nearest_tenth_m(&part(&body, true, hand), &part(&body, false, upper_arm));
+            let over = nearest_m(&part(&body, false, hand), &part(&body, true, upper_arm), 0.1);
+            let under = nearest_m(&part(&body, true, hand), &part(&body, false, upper_arm), 0.1);
             let hips = posed(NamedPose::HandsOnHips);
             let trunk: Vec<Vec3> = [true, false].into_iter().flat_map(|side| part(&hips, side, trunk)).collect();
-            let on_hip = nearest_tenth_m(&part(&hips, true, hand), &trunk);
+            let on_hip = nearest_m(&part(&hips, true, hand), &trunk, 0.1);
             assert!(over.max(under).max(on_hip) < 0.04, "{sex} {weight}: {over} {under} {on_hip}");
+        }
+    }
+
+    /// Returns the depth of the deepest twentieth of some vertices in a part of a body, of one or both sides, metres.
+    fn depth_m(vertices: &[Vec3], body: &PosedBody, is_left: Option<bool>, is_in: impl Fn(Place) -> bool) -> f32 {
+        let data = BodyData::shipped();
+        let is_of_part = |v: u16| {
+            let side = data.positions[usize::from(v)].x > 0.0;
+            is_left.is_none_or(|is_left| is_left == side) && is_in(Edges::shipped().place(v))
+        };
+        let patch = Patch::new(data, "body", &body.positions, &|quad| quad.iter().all(|&v| is_of_part(v)));
+        let positions = patch.positions.clone();
+        let skin = patch.skin();
+        // A point beside the edge of a part is not in it
+        let is_near = |v: &Vec3| positions.iter().any(|other| v.distance(*other) < NEAR_M);
+        let height = |v: &Vec3| if is_near(v) { skin.height(*v).map_or(0.0, |(height, _)| height) } else { 0.0 };
+        let mut depths: Vec<f32> = vertices.iter().map(|v| (-height(v)).max(0.0)).collect();
+        depths.sort_by(f32::total_cmp);
+        depths[depths.len() * 19 / 20]
+    }
+
+    #[test]
+    fn hands_that_are_joined_at_the_chin_and_in_the_hair_touch() {
+        let hand = |place: Place| matches!(place, Place::Arm(at) if at >= 2.0);
+        let elbow = |place: Place| matches!(place, Place::Arm(at) if (0.7..1.3).contains(&at));
+        let head = |place: Place| matches!(place, Place::Trunk { height } if height > NECK_HEIGHT);
+        let trunk = |place: Place| matches!(place, Place::Trunk { height } if height < NECK_HEIGHT);
+        for (sex, height_m, weight) in BODIES {
+            let figure = Figure { body: Body { sex, height_m, weight, ..Body::default() }, ..Figure::default() };
+            // Returns a body and the vertices of its left and right hand
+            let posed = |named: NamedPose| {
+                let body = PosedBody::new(BodyData::shipped(), &Figure { pose: named.pose(), ..figure });
+                let hands = [true, false].map(|side| part(&body, side, hand));
+                (body, hands)
+            };
+            let both =
+                |body: &PosedBody, is_in: fn(Place) -> bool| [true, false].map(|s| part(body, s, is_in)).concat();
+            let check = |what: &str, distance_m: f32, limit_m: f32| {
+                assert!(distance_m < limit_m, "sex {sex}, weight {weight}, {what}: {distance_m} m");
+            };
+            for named in [NamedPose::HandsJoined, NamedPose::HandsBehind] {
+                let (body, [left, right]) = posed(named);
+                check("between the hands", nearest_m(&right, &left, 0.5), 0.016);
+                check("one hand in the other", depth_m(&right, &body, Some(true), hand), 0.007);
+                check("between hands and trunk", nearest_m(&left, &both(&body, trunk), 0.1), 0.07);
+            }
+            let (body, [left, right]) = posed(NamedPose::HandAtChin);
+            check("between hand and chin", nearest_m(&both(&body, head), &right, 0.0), 0.011);
+            check("hand in chin", depth_m(&right, &body, None, head), 0.003);
+            check("between hand and elbow", nearest_m(&left, &part(&body, false, elbow), 0.25), 0.025);
+            check("hand in elbow", depth_m(&left, &body, Some(false), elbow), 0.006);
+            let (body, [_, right]) = posed(NamedPose::HandInHair);
+            check("between hand and head", nearest_m(&right, &both(&body, head), 0.5), 0.025);
+            check("hand in head", depth_m(&right, &body, None, head), 0.008);
         }
     }
 }

@@ -1,7 +1,8 @@
 //! The figures on the shelf, and random ones.
 
 use super::materials::{EYE_COLORS, HAIR_COLORS, PARTS_OF_HAIR, SKIN_TONES, default_parts};
-use super::named_poses::{NamedExpression, NamedPose};
+use super::named_expressions::NamedExpression;
+use super::named_poses::NamedPose;
 use super::random::Random;
 use crate::scene::{Beard, Body, Bottom, Face, Figure, HairStyle, Material, ParameterSet, Top};
 
