@@ -247,6 +247,17 @@ const WAVING: Arm =
     Arm { out_deg: 80.0, forward_deg: 15.0, twist_deg: 88.0, elbow_deg: 110.0, fingers: 0.05, ..HANGING };
 const ON_THIGH: Arm =
     Arm { out_deg: 12.0, forward_deg: 22.0, twist_deg: -18.0, elbow_deg: 58.0, forearm_deg: -55.0, ..HANGING };
+/// Of a usual man, the palm lies on the thigh of a seated figure; that of a woman is 2 cm above it.
+const RESTING: Arm = Arm {
+    shoulder_deg: -5.0,
+    out_deg: 18.0,
+    forward_deg: 12.0,
+    twist_deg: -21.0,
+    elbow_deg: 59.0,
+    forearm_deg: -16.0,
+    wrist_deg: 16.5,
+    fingers: 0.15,
+};
 const ON_KNEE: Arm =
     Arm { out_deg: 8.0, forward_deg: 38.0, twist_deg: -12.0, elbow_deg: 36.0, forearm_deg: -60.0, ..HANGING };
 const TOGETHER: Leg = Leg { out_m: 0.07, toes_out_deg: 2.0, ..PLANTED };
@@ -312,7 +323,7 @@ fn seated(seat_m: f32) -> Pose {
     Pose {
         seat_m: Some(seat_m),
         torso: Torso { chest_pitch_deg: 4.0, head_pitch_deg: -3.0, ..Torso::default() },
-        arms: [ON_THIGH; 2],
+        arms: [RESTING; 2],
         legs: [Leg { out_m: 0.14, toes_out_deg: 10.0, ..PLANTED }; 2],
     }
 }
@@ -422,11 +433,12 @@ mod tests {
     }
 
     #[test]
-    fn hands_that_are_joined_at_the_chin_and_in_the_hair_touch() {
+    fn hands_that_are_joined_at_the_chin_in_the_hair_and_on_thighs_touch() {
         let hand = |place: Place| matches!(place, Place::Arm(at) if at >= 2.0);
         let elbow = |place: Place| matches!(place, Place::Arm(at) if (0.7..1.3).contains(&at));
         let head = |place: Place| matches!(place, Place::Trunk { height } if height > NECK_HEIGHT);
         let trunk = |place: Place| matches!(place, Place::Trunk { height } if height < NECK_HEIGHT);
+        let leg = |place: Place| matches!(place, Place::Leg(_));
         for (sex, height_m, weight) in BODIES {
             let figure = Figure { body: Body { sex, height_m, weight, ..Body::default() }, ..Figure::default() };
             // Returns a body and the vertices of its left and right hand
@@ -454,6 +466,9 @@ mod tests {
             let (body, [_, right]) = posed(NamedPose::HandInHair);
             check("between hand and head", nearest_m(&right, &both(&body, head), 0.5), 0.025);
             check("hand in head", depth_m(&right, &body, None, head), 0.008);
+            let (body, [left, _]) = posed(NamedPose::Seated);
+            check("between hand and thigh", nearest_m(&left, &part(&body, true, leg), 0.5), 0.035);
+            check("hand in thigh", depth_m(&left, &body, Some(true), leg), 0.006);
         }
     }
 }
