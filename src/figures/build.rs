@@ -177,8 +177,7 @@ fn cage(data: &BodyData, figure: &Figure, body: &PosedBody) -> QuadMesh {
     let covered =
         |v: u16| edges.top(v, clothes).max(edges.below_bottom(v, clothes.bottom)).max(edges.shoe(v)) > OVERLAP_M;
     let seen = |quad: &[u16; 4]| body.has(quad) && !quad.iter().all(|&v| covered(v));
-    let mut skin = Patch::new(data, "body", &body.positions, &seen);
-    skin.move_border(&|v| body.above_cut(v));
+    let skin = Patch::new(data, "body", &body.positions, &seen).cut(&|v| body.above_cut(v));
     let eyes = data.eyes_middle();
     let mut mesh = skin.into_mesh(SKIN, &|v| data.positions[usize::from(v)] - eyes);
     // Closed lips hide the teeth; the preview's shadows are too soft for the slit between them

@@ -5,7 +5,7 @@ use super::body_data::BodyData;
 use super::cloth::Cloth;
 use super::patch::{Patch, Skin};
 use super::posed_body::PosedBody;
-use super::regions::{Clothes, Edges, Garment};
+use super::regions::{Clothes, Edges, Garment, Place};
 use super::skin_colors::NO_SKIN;
 use super::subdivide::{QuadMesh, SubdivisionSurface};
 use crate::scene::{Bottom, Figure, Top};
@@ -60,9 +60,21 @@ fn fitted(data: &BodyData, figure: &Figure, body: &PosedBody, garment: Garment, 
         Garment::Top => edges.top(v, clothes),
         Garment::Shoe => edges.shoe(v),
     };
-    let mut patch = Patch::new(data, group, positions, &|quad| body.has(quad) && quad.iter().any(|&v| field(v) > 0.0));
-    patch.move_border(&|v| field(v).min(body.above_cut(v)));
-    patch.move_outwards(&|v| edges.looseness(v, garment, clothes));
+    let inside = |quad: &[u16; 4]| body.has(quad) && quad.iter().any(|&v| field(v) > 0.0);
+    let mut patch = Patch::new(data, group, positions, &inside).cut(&|v| field(v).min(body.above_cut(v)));
+    let shins = shins(data, positions);
+    patch.move_by(&|v, normal| {
+        let looseness_m =
+            edges.looseness(v, garment, clothes) * (1.0 - edges.lies_closer(v, garment) * normal.y.max(0.0));
+        match edges.place(v) {
+            // Across the shin: in front of the ankle, normals meet
+            Place::Leg(at) if garment == Garment::Bottom && !is_skirt && at > 1.0 => {
+                let shin = shins[usize::from(data.positions[usize::from(v)].x < 0.0)];
+                normal.reject_from(shin).normalize_or(normal) * looseness_m
+            }
+            _ => normal * looseness_m,
+        }
+    });
     // Only the edges of collar and straps lie close: further out the garment hangs from the shoulders
     if garment == Garment::Top {
         let shoulders = shoulders(data, clothes.top, positions).skin();
@@ -77,6 +89,15 @@ fn fitted(data: &BodyData, figure: &Figure, body: &PosedBody, garment: Garment, 
     let is_unseen =
         |v: u16| body.above_cut(v) < field(v) || (garment == Garment::Top && edges.is_tucked_in(v, clothes));
     patch.into_mesh(0, &|v| Vec3::new(mobility(v), closeness(v), f32::from(is_unseen(v))))
+}
+
+/// Returns the unit vectors from knee to ankle, left and right.
+fn shins(data: &BodyData, positions: &[Vec3]) -> [Vec3; 2] {
+    let joint = |name: String| data.bone(&name).map_or(Vec3::ZERO, |b| positions[usize::from(data.bones[b].head)]);
+    ["L", "R"].map(|side| {
+        let [knee, ankle] = ["lowerleg01", "foot"].map(|stem| joint(format!("{stem}.{side}")));
+        (ankle - knee).normalize_or(Vec3::NEG_Y)
+    })
 }
 
 /// Returns the band at an edge of a garment whose values are those of [`fitted`]. None where a bust is cut or the edge is
@@ -162,6 +183,38 @@ mod tests {
             for position in collar {
                 let height = skin.height(*position).map_or(0.0, |(height, _)| height);
                 assert!((0.0005..0.015).contains(&height), "{}: {height} m over the skin at {position}", ready.name);
+            }
+        }
+    }
+
+    /// Returns the largest angle between successive vectors of a closed row, degrees.
+    fn largest_turn_deg(ways: &[Vec3]) -> f32 {
+        let pairs = ways.iter().zip(ways.iter().cycle().skip(1));
+        pairs.map(|(a, b)| a.angle_between(*b).to_degrees()).fold(0.0, f32::max)
+    }
+
+    /// The border of a cut mesh once ran back and forth, with normals that turned by 150 degrees: hems had notches.
+    #[test]
+    fn edges_of_lower_garments_and_of_sleeves_are_lines_without_reversals() {
+        let data = BodyData::shipped();
+        for ready in READY {
+            let figure = ready.figure();
+            let body = PosedBody::new(data, &figure);
+            for garment in [Garment::Top, Garment::Bottom] {
+                let fitted = fitted(data, &figure, &body, garment, &body.positions);
+                let surface = SubdivisionSurface::new(fitted).subdivided();
+                let (positions, normals) = (&surface.mesh.positions, surface.mesh.normals());
+                let is_sleeve = |edge: &[u32]| figure.top != Top::Straps && edge.len() < 50;
+                for edge in surface.border_loops() {
+                    if garment == Garment::Top && !is_sleeve(&edge) {
+                        continue;
+                    }
+                    let next = edge.iter().cycle().skip(1);
+                    let sides = edge.iter().zip(next).map(|(a, b)| positions[*b as usize] - positions[*a as usize]);
+                    let normals: Vec<Vec3> = edge.iter().map(|&v| normals[v as usize]).collect();
+                    let turns = [&sides.collect::<Vec<_>>(), &normals].map(|ways| largest_turn_deg(ways));
+                    assert!(turns.iter().all(|turn| *turn < 50.0), "{} {garment:?}: {turns:?} degrees", ready.name);
+                }
             }
         }
     }

@@ -16,6 +16,7 @@ mod body_codec;
 mod body_data;
 mod build;
 mod cloth;
+mod cut;
 mod eyes;
 mod face;
 mod garments;

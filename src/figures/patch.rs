@@ -4,7 +4,6 @@ use super::body_data::BodyData;
 use super::subdivide::{QuadMesh, SubdivisionSurface};
 use crate::math::PointSet;
 use glam::{Vec2, Vec3};
-use std::collections::HashMap;
 
 /// Quads with their own vertices.
 #[derive(Clone, Debug, Default)]
@@ -80,42 +79,6 @@ impl Patch {
         patch
     }
 
-    /// Moves every vertex outside of a field (negative) along an edge to where the field is 0, so that the patch ends
-    /// in a smooth line.
-    pub fn move_border(&mut self, field: &dyn Fn(u16) -> f32) {
-        let fields: Vec<f32> = self.sources.iter().map(|&v| field(v)).collect();
-        // The neighbour that lies farthest inside, for each vertex outside
-        let mut inner: HashMap<u32, u32> = HashMap::new();
-        for quad in &self.quads {
-            for k in 0..4 {
-                for (outside, inside) in [(quad[k], quad[(k + 1) % 4]), (quad[(k + 1) % 4], quad[k])] {
-                    let is_crossed = fields[outside as usize] < 0.0 && fields[inside as usize] >= 0.0;
-                    let farther = |known: &u32| fields[*known as usize] < fields[inside as usize];
-                    if is_crossed && inner.get(&outside).is_none_or(farther) {
-                        inner.insert(outside, inside);
-                    }
-                }
-            }
-        }
-        let old = self.positions.clone();
-        for (outside, inside) in inner {
-            let (o, i) = (outside as usize, inside as usize);
-            let t = fields[o] / (fields[o] - fields[i]);
-            self.positions[o] = old[o].lerp(old[i], t.clamp(0.0, 0.98));
-        }
-        // A quad with one corner inside has one that borders on none: it collapses to the middle of its neighbours.
-        for quad in &self.quads {
-            for k in 0..4 {
-                let corner = quad[k] as usize;
-                let [before, after] = [quad[(k + 3) % 4] as usize, quad[(k + 1) % 4] as usize];
-                let is_alone = fields[corner] < 0.0 && self.positions[corner] == old[corner];
-                if is_alone {
-                    self.positions[corner] = (self.positions[before] + self.positions[after]) / 2.0;
-                }
-            }
-        }
-    }
-
     /// Moves vertices to a height over skin, metres: by a weight of 0 (not at all) to 1 (all the way).
     pub fn lay_on(&mut self, skin: &Skin, height_m: f32, weight: &dyn Fn(u16) -> f32) {
         for (position, &source) in self.positions.iter_mut().zip(&self.sources) {
@@ -128,11 +91,11 @@ impl Patch {
         }
     }
 
-    /// Moves every vertex along its normal by an offset in metres.
-    pub fn move_outwards(&mut self, offset: &dyn Fn(u16) -> f32) {
+    /// Moves every vertex by a vector, metres, that a function computes from its source and its unit normal.
+    pub fn move_by(&mut self, offset: &dyn Fn(u16, Vec3) -> Vec3) {
         let normals = self.normals();
         for ((position, normal), &source) in self.positions.iter_mut().zip(normals).zip(&self.sources) {
-            *position += normal * offset(source);
+            *position += offset(source, normal);
         }
     }
 

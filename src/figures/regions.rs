@@ -61,20 +61,16 @@ fn along(p: Vec3, a: Vec3, b: Vec3) -> f32 {
     (p - a).dot(b - a) / (b - a).length_squared().max(1e-9)
 }
 
-/// Returns the distance from the end of a sleeve, metres, for a place on an arm.
-fn to_sleeve_end(at: f32, top: Top) -> f32 {
-    let end = match top {
-        Top::LongSleeves => 1.93,
-        Top::ShortSleeves => 0.56,
-        Top::Straps => 0.02,
-    };
-    (end - at) * 0.27
-}
-
 /// Distance from a hold that the ends of trousers are counted as, metres: they lie on the shoes, which slow their fall.
 const ON_SHOE_M: f32 = 0.01;
 /// Distance from the neckline at which a garment hangs freely, metres.
 const COLLAR_END_M: f32 = 0.06;
+
+/// Distance of cuffs from the arm, and the distance from the end of a sleeve at which it is as wide as without, metres.
+const CUFF_M: f32 = 0.004;
+const CUFF_TAPER_M: f32 = 0.1;
+/// Part of its distance from the body by which a top comes nearer where it lies on the shoulders.
+const LIES_CLOSER: f32 = 0.7;
 
 /// What a figure wears, besides shoes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -98,6 +94,9 @@ impl Clothes {
 pub struct Edges {
     places: Vec<Place>,
     positions: Vec<Vec3>,
+    /// Knee and ankle, and elbow and wrist, left and right.
+    shins: [[Vec3; 2]; 2],
+    forearms: [[Vec3; 2]; 2],
     /// Middle of the neck's base.
     neck: Vec3,
     knee_height: f32,
@@ -116,8 +115,11 @@ impl Edges {
     /// Returns the edges on a body.
     fn new(data: &BodyData) -> Edges {
         let head = |name: &str| data.bone(name).map_or(Vec3::ZERO, |b| data.positions[usize::from(data.bones[b].head)]);
+        let joints = |names: [&str; 2]| ["L", "R"].map(|side| names.map(|stem| head(&format!("{stem}.{side}"))));
         Edges {
             places: places(data),
+            shins: joints(["lowerleg01", "foot"]),
+            forearms: joints(["lowerarm01", "wrist"]),
             positions: data.positions.clone(),
             neck: head("neck01"),
             knee_height: head("lowerleg01.L").y,
@@ -136,10 +138,28 @@ impl Edges {
         self.places[usize::from(vertex)]
     }
 
+    /// Returns the position along an arm or a leg, as in [`Place`], but without a step between a limb and its hand or
+    /// foot: lines of equal values lie in planes there.
+    fn along(&self, vertex: u16, at: f32, bones: &[[Vec3; 2]; 2]) -> f32 {
+        let position = self.positions[usize::from(vertex)];
+        let [from, to] = bones[usize::from(position.x < 0.0)];
+        if at > 1.5 { 1.0 + along(position, from, to) } else { at }
+    }
+
+    /// Returns the distance from the end of a sleeve, metres, for a place on an arm.
+    fn to_sleeve_end(&self, vertex: u16, at: f32, top: Top) -> f32 {
+        let end = match top {
+            Top::LongSleeves => 1.93,
+            Top::ShortSleeves => 0.56,
+            Top::Straps => 0.02,
+        };
+        (end - self.along(vertex, at, &self.forearms)) * 0.27
+    }
+
     /// Returns the field of an upper garment.
     pub fn top(&self, vertex: u16, clothes: Clothes) -> f32 {
         match self.place(vertex) {
-            Place::Arm(at) => to_sleeve_end(at, clothes.top),
+            Place::Arm(at) => self.to_sleeve_end(vertex, at, clothes.top),
             Place::Leg(_) => self.to_hem(vertex, clothes.bottom),
             // Neck and head lie over every garment.
             Place::Trunk { height } => self
@@ -183,7 +203,7 @@ impl Edges {
         };
         match self.place(vertex) {
             Place::Arm(_) => -0.05,
-            Place::Leg(at) => (end - at) * 0.42,
+            Place::Leg(at) => (end - self.along(vertex, at, &self.shins)) * 0.42,
             Place::Trunk { height } => (0.16 - height) * 0.5,
         }
     }
@@ -208,7 +228,9 @@ impl Edges {
     /// Returns the distance from the nearest edge of an upper garment that lies close: collar and straps.
     fn to_close_edge(&self, vertex: u16, top: Top) -> f32 {
         match self.place(vertex) {
-            Place::Arm(at) if top == Top::Straps => to_sleeve_end(at, top).min(self.to_neckline(vertex, top)),
+            Place::Arm(at) if top == Top::Straps => {
+                self.to_sleeve_end(vertex, at, top).min(self.to_neckline(vertex, top))
+            }
             _ => self.to_neckline(vertex, top),
         }
     }
@@ -228,7 +250,7 @@ impl Edges {
     pub fn to_hold(&self, vertex: u16, garment: Garment, Clothes { top, bottom }: Clothes) -> f32 {
         match (garment, self.place(vertex)) {
             (Garment::Shoe, _) => 0.0,
-            (Garment::Top, Place::Arm(at)) if top != Top::ShortSleeves => to_sleeve_end(at, top),
+            (Garment::Top, Place::Arm(at)) if top != Top::ShortSleeves => self.to_sleeve_end(vertex, at, top),
             (Garment::Top, _) if bottom.hangs_from_waist() => {
                 self.to_neckline(vertex, top).min(self.to_hem(vertex, bottom))
             }
@@ -240,6 +262,15 @@ impl Edges {
         }
     }
 
+    /// Returns the part of its distance from the body by which a garment comes nearer where it faces up.
+    pub fn lies_closer(&self, vertex: u16, garment: Garment) -> f32 {
+        match (garment, self.place(vertex)) {
+            (Garment::Top, Place::Arm(at)) => LIES_CLOSER * (1.0 - at).clamp(0.0, 1.0),
+            (Garment::Top, Place::Trunk { height }) => LIES_CLOSER * ((height - 0.6) / 0.2).clamp(0.0, 1.0),
+            _ => 0.0,
+        }
+    }
+
     /// Returns how far a garment stands off from the body, metres.
     pub fn looseness(&self, vertex: u16, garment: Garment, Clothes { top, bottom }: Clothes) -> f32 {
         let from_edge = 1.0 - self.nearness_to_close_edge(vertex, top);
@@ -247,7 +278,13 @@ impl Edges {
         let tuck = if bottom.hangs_from_waist() { (self.to_hem(vertex, bottom) / 0.06).clamp(0.2, 1.0) } else { 1.0 };
         match (garment, self.place(vertex)) {
             (Garment::Shoe, _) => 0.003,
-            (Garment::Top, Place::Arm(at)) => 0.006 + 0.006 * at.min(1.0),
+            (Garment::Top, Place::Arm(at)) => {
+                let loose = 0.006 + 0.006 * at.min(1.0);
+                // Cuffs of long sleeves are close
+                let from_cuff =
+                    if top == Top::LongSleeves { self.to_sleeve_end(vertex, at, top) } else { CUFF_TAPER_M };
+                CUFF_M + (loose - CUFF_M) * (from_cuff / CUFF_TAPER_M).clamp(0.0, 1.0)
+            }
             // Over the trousers
             (Garment::Top, Place::Trunk { height }) => {
                 (0.001 + 0.006 * from_edge + 0.012 * (0.6 - height).clamp(0.0, 0.6)) * tuck
