@@ -62,6 +62,9 @@ fn fitted(data: &BodyData, figure: &Figure, body: &PosedBody, garment: Garment, 
     };
     let inside = |quad: &[u16; 4]| body.has(quad) && quad.iter().any(|&v| field(v) > 0.0);
     let mut patch = Patch::new(data, group, positions, &inside).cut(&|v| field(v).min(body.above_cut(v)));
+    if garment == Garment::Top {
+        patch.fill_hollows(&|v| edges.spans_hollows(v, clothes));
+    }
     let shins = shins(data, positions);
     patch.move_by(&|v, normal| {
         let looseness_m =

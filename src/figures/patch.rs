@@ -5,6 +5,9 @@ use super::subdivide::{QuadMesh, SubdivisionSurface};
 use crate::math::PointSet;
 use glam::{Vec2, Vec3};
 
+/// Rounds in which hollows are filled.
+const FILL_ROUNDS: usize = 40;
+
 /// Quads with their own vertices.
 #[derive(Clone, Debug, Default)]
 pub struct Patch {
@@ -91,6 +94,36 @@ impl Patch {
         }
     }
 
+    /// Fills hollows, as cloth spans them: moves vertices along their normals towards the mean of their neighbours where
+    /// that is outwards, by a weight of 0 (not at all) to 1.
+    pub fn fill_hollows(&mut self, weight: &dyn Fn(u16) -> f32) {
+        let weights: Vec<f32> = self.sources.iter().map(|&v| weight(v)).collect();
+        if weights.iter().all(|weight| *weight <= 0.0) {
+            return;
+        }
+        let quads: Vec<_> = self.quads.iter().filter(|quad| quad.iter().any(|v| weights[*v as usize] > 0.0)).collect();
+        for _ in 0..FILL_ROUNDS {
+            // Sum of the neighbours, their count and the normal of each vertex
+            let mut around = vec![(Vec3::ZERO, 0.0, Vec3::ZERO); self.positions.len()];
+            for quad in &quads {
+                let corners = quad.map(|v| self.positions[v as usize]);
+                let normal = (corners[2] - corners[0]).cross(corners[3] - corners[1]);
+                for k in 0..4 {
+                    let (sum, count, normals) = &mut around[quad[k] as usize];
+                    *sum += corners[(k + 1) % 4] + corners[(k + 3) % 4];
+                    *count += 2.0;
+                    *normals += normal;
+                }
+            }
+            for (vertex, position) in self.positions.iter_mut().enumerate().filter(|(v, _)| weights[*v] > 0.0) {
+                let (sum, count, normal) = around[vertex];
+                let normal = normal.normalize_or_zero();
+                let outwards = (sum / f32::max(count, 1.0) - *position).dot(normal).max(0.0);
+                *position += normal * (outwards * weights[vertex]);
+            }
+        }
+    }
+
     /// Moves every vertex by a vector, metres, that a function computes from its source and its unit normal.
     pub fn move_by(&mut self, offset: &dyn Fn(u16, Vec3) -> Vec3) {
         let normals = self.normals();
@@ -120,5 +153,37 @@ impl Patch {
             }
         }
         normals.iter().map(|normal| normal.normalize_or_zero()).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Squares along each edge of a level sheet whose outside is above.
+    const SQUARES: u16 = 10;
+
+    #[test]
+    fn hollows_are_filled_and_ridges_stay() {
+        let side = SQUARES + 1;
+        let corners = |v: u16| [v, v + side, v + side + 1, v + 1].map(u32::from);
+        let starts = (0..side * side).filter(|v| v % side < SQUARES && v / side < SQUARES);
+        for depth_m in [0.02, -0.02] {
+            let height = |v: u16| if v % side == SQUARES / 2 { -depth_m } else { 0.0 };
+            let position = |v: u16| Vec3::new(f32::from(v % side) * 0.02, height(v), f32::from(v / side) * 0.02);
+            let mut patch = Patch {
+                positions: (0..side * side).map(position).collect(),
+                quads: starts.clone().map(corners).collect(),
+                uvs: Vec::new(),
+                sources: (0..side * side).collect(),
+            };
+            patch.fill_hollows(&|_| 1.0);
+            let middle = patch.positions[usize::from(side * side / 2)].y;
+            if depth_m > 0.0 {
+                assert!(middle > -0.3 * depth_m, "{middle} m of {depth_m} m");
+            } else {
+                assert!((middle + depth_m).abs() < 1e-6, "{middle} m of {depth_m} m");
+            }
+        }
     }
 }

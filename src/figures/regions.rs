@@ -69,6 +69,8 @@ const COLLAR_END_M: f32 = 0.06;
 /// Distance of cuffs from the arm, and the distance from the end of a sleeve at which it is as wide as without, metres.
 const CUFF_M: f32 = 0.004;
 const CUFF_TAPER_M: f32 = 0.1;
+/// Height over its hem to which a top that hangs spans hollows, metres.
+const SPAN_M: f32 = 0.24;
 /// Part of its distance from the body by which a top comes nearer where it lies on the shoulders.
 const LIES_CLOSER: f32 = 0.7;
 
@@ -176,6 +178,16 @@ impl Edges {
             Bottom::Skirt => self.waist_height - 0.08,
         };
         self.positions[usize::from(vertex)].y - hem_height
+    }
+
+    /// Returns how much an upper garment spans the hollows of the body: 1 near a hem that hangs, 0 from
+    /// 24 cm above it on.
+    pub fn spans_hollows(&self, vertex: u16, clothes: Clothes) -> f32 {
+        let is_arm = matches!(self.place(vertex), Place::Arm(_));
+        if is_arm || clothes.bottom.hangs_from_waist() {
+            return 0.0;
+        }
+        (2.0 - 2.0 * self.to_hem(vertex, clothes.bottom) / SPAN_M).clamp(0.0, 1.0)
     }
 
     /// Returns true where the nearest edge of an upper garment is one that is tucked into a skirt.
