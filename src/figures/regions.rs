@@ -71,6 +71,13 @@ const CUFF_M: f32 = 0.004;
 const CUFF_TAPER_M: f32 = 0.1;
 /// Height over its hem to which a top that hangs spans hollows, metres.
 const SPAN_M: f32 = 0.24;
+/// Length at the lower edge of a top over which it is tucked into a skirt, and the depth of that edge below the skin,
+/// metres: the skirt hugs the hips.
+const TUCK_M: f32 = 0.045;
+const TUCKED_IN_M: f32 = 0.015;
+/// Distance of a skirt from its helper mesh, and the length below its edge over which it comes that far within, metres.
+const SKIRT_M: f32 = 0.006;
+const WAISTBAND_M: f32 = 0.06;
 /// Part of its distance from the body by which a top comes nearer where it lies on the shoulders.
 const LIES_CLOSER: f32 = 0.7;
 
@@ -286,8 +293,8 @@ impl Edges {
     /// Returns how far a garment stands off from the body, metres.
     pub fn looseness(&self, vertex: u16, garment: Garment, Clothes { top, bottom }: Clothes) -> f32 {
         let from_edge = 1.0 - self.nearness_to_close_edge(vertex, top);
-        // A top that is tucked in is tight there
-        let tuck = if bottom.hangs_from_waist() { (self.to_hem(vertex, bottom) / 0.06).clamp(0.2, 1.0) } else { 1.0 };
+        // A top that is tucked in comes closer from the edge of the skirt on
+        let tuck = if bottom.hangs_from_waist() { (self.to_hem(vertex, bottom) / TUCK_M).clamp(0.0, 1.0) } else { 1.0 };
         match (garment, self.place(vertex)) {
             (Garment::Shoe, _) => 0.003,
             (Garment::Top, Place::Arm(at)) => {
@@ -299,10 +306,15 @@ impl Edges {
             }
             // Over the trousers
             (Garment::Top, Place::Trunk { height }) => {
-                (0.001 + 0.006 * from_edge + 0.012 * (0.6 - height).clamp(0.0, 0.6)) * tuck
+                (0.001 + 0.006 * from_edge + 0.012 * (0.6 - height).clamp(0.0, 0.6)) * tuck - TUCKED_IN_M * (1.0 - tuck)
             }
-            (Garment::Top, Place::Leg(_)) => 0.014,
-            (Garment::Bottom, _) if bottom.hangs_from_waist() => 0.006,
+            (Garment::Top, Place::Leg(_)) => 0.014 * tuck - TUCKED_IN_M * (1.0 - tuck),
+            // The waistband of a skirt is below the top
+            (Garment::Bottom, _) if bottom.hangs_from_waist() => {
+                let below_edge_m = self.waist_height - self.positions[usize::from(vertex)].y;
+                let below_waistband = (below_edge_m / WAISTBAND_M).clamp(0.0, 1.0);
+                SKIRT_M * (2.0 * below_waistband - 1.0)
+            }
             (Garment::Bottom, Place::Leg(at)) => 0.005 + 0.009 * at.clamp(0.0, 2.0),
             (Garment::Bottom, _) => 0.005,
         }
