@@ -52,8 +52,15 @@ impl Patch {
     }
 }
 
-/// A corner of a clipped quad: a vertex of the cut patch, its texture coordinates, and true if it is inside of the line.
-type Corner = (u32, Vec2, bool);
+/// A corner of a clipped quad.
+#[derive(Clone, Copy, Debug)]
+struct Corner {
+    /// Vertex of the cut patch.
+    vertex: u32,
+    uv: Vec2,
+    /// False on the line.
+    is_inside: bool,
+}
 
 /// A patch that is being cut.
 #[derive(Debug, Default)]
@@ -80,11 +87,12 @@ impl Cut {
         for k in 0..4 {
             let next = (k + 1) % 4;
             if fields[k] >= 0.0 {
-                polygon.push((self.vertex(corners[k]), uvs[k], fields[k] > 0.0));
+                polygon.push(Corner { vertex: self.vertex(corners[k]), uv: uvs[k], is_inside: fields[k] > 0.0 });
             }
             if fields[k] * fields[next] < 0.0 {
                 let uv = uvs[k].lerp(uvs[next], fields[k] / (fields[k] - fields[next]));
-                polygon.push((self.on_edge([corners[k], corners[next]]), uv, false));
+                let vertex = self.on_edge([corners[k], corners[next]]);
+                polygon.push(Corner { vertex, uv, is_inside: false });
             }
         }
         self.add_polygon(&polygon);
@@ -94,7 +102,7 @@ impl Cut {
     fn add_polygon(&mut self, polygon: &[Corner]) {
         let count = polygon.len();
         // The side on the line begins at this corner
-        let line = (0..count).find(|&k| !polygon[k].2 && !polygon[(k + 1) % count].2);
+        let line = (0..count).find(|&k| !polygon[k].is_inside && !polygon[(k + 1) % count].is_inside);
         let at = |k: usize| polygon[(line.unwrap_or(0) + k) % count];
         match count {
             3 if line.is_some() => self.add_triangle([at(2), at(0), at(1)]),
@@ -105,7 +113,7 @@ impl Cut {
             }
             // Two corners across are inside
             6 => {
-                for first in (0..6).filter(|&k| polygon[k].2) {
+                for first in (0..6).filter(|&k| polygon[k].is_inside) {
                     self.add_triangle([0, 1, 5].map(|k| polygon[(first + k) % 6]));
                 }
             }
@@ -115,16 +123,15 @@ impl Cut {
 
     /// Adds a triangle whose second and third corner are on the line.
     fn add_triangle(&mut self, [inside, a, b]: [Corner; 3]) {
-        let middle = self.push(
-            (self.patch.positions[a.0 as usize] + self.patch.positions[b.0 as usize]) / 2.0,
-            self.patch.sources[a.0 as usize],
-        );
-        self.add([inside, a, (middle, (a.1 + b.1) / 2.0, false), b]);
+        let [p, q] = [a, b].map(|corner| self.patch.positions[corner.vertex as usize]);
+        let vertex = self.push((p + q) / 2.0, self.patch.sources[a.vertex as usize]);
+        let middle = Corner { vertex, uv: (a.uv + b.uv) / 2.0, is_inside: false };
+        self.add([inside, a, middle, b]);
     }
 
     fn add(&mut self, corners: [Corner; 4]) {
-        self.patch.quads.push(corners.map(|corner| corner.0));
-        self.patch.uvs.push(corners.map(|corner| corner.1));
+        self.patch.quads.push(corners.map(|corner| corner.vertex));
+        self.patch.uvs.push(corners.map(|corner| corner.uv));
     }
 
     fn push(&mut self, position: Vec3, source: u16) -> u32 {
