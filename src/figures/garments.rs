@@ -203,7 +203,7 @@ mod tests {
         pairs.map(|(a, b)| a.angle_between(*b).to_degrees()).fold(0.0, f32::max)
     }
 
-    /// The border of a cut mesh once ran back and forth, with normals that turned by 150 degrees: hems had notches. The
+    /// The border of a cut mesh once ran back and forth, with normals turned inside out: hems had notches. The
     /// hem of a top follows the crease of the back, and its neckline is laid on the skin.
     #[test]
     fn edges_of_lower_garments_and_of_sleeves_are_lines_without_reversals() {

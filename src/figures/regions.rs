@@ -290,11 +290,12 @@ impl Edges {
         }
     }
 
-    /// Returns how far a garment stands off from the body, metres.
+    /// Returns how far a garment stands off from the body, metres; negative where it is below another one.
     pub fn looseness(&self, vertex: u16, garment: Garment, Clothes { top, bottom }: Clothes) -> f32 {
         let from_edge = 1.0 - self.nearness_to_close_edge(vertex, top);
         // A top that is tucked in comes closer from the edge of the skirt on
         let tuck = if bottom.hangs_from_waist() { (self.to_hem(vertex, bottom) / TUCK_M).clamp(0.0, 1.0) } else { 1.0 };
+        let tucked = |loose_m: f32| loose_m * tuck - TUCKED_IN_M * (1.0 - tuck);
         match (garment, self.place(vertex)) {
             (Garment::Shoe, _) => 0.003,
             (Garment::Top, Place::Arm(at)) => {
@@ -306,9 +307,9 @@ impl Edges {
             }
             // Over the trousers
             (Garment::Top, Place::Trunk { height }) => {
-                (0.001 + 0.006 * from_edge + 0.012 * (0.6 - height).clamp(0.0, 0.6)) * tuck - TUCKED_IN_M * (1.0 - tuck)
+                tucked(0.001 + 0.006 * from_edge + 0.012 * (0.6 - height).clamp(0.0, 0.6))
             }
-            (Garment::Top, Place::Leg(_)) => 0.014 * tuck - TUCKED_IN_M * (1.0 - tuck),
+            (Garment::Top, Place::Leg(_)) => tucked(0.014),
             // The waistband of a skirt is below the top
             (Garment::Bottom, _) if bottom.hangs_from_waist() => {
                 let below_edge_m = self.waist_height - self.positions[usize::from(vertex)].y;
