@@ -1,6 +1,7 @@
 //! Sews bands to the edges of garments: collars, cuffs and hems. A band begins at a seam, stands out by the
 //! thickness of folded cloth and ends in a rim that is turned under.
 
+use super::fairing::low_pass;
 use super::patch::Skin;
 use super::subdivide::{QuadMesh, SubdivisionSurface};
 use glam::{Vec2, Vec3};
@@ -24,6 +25,8 @@ const SMOOTHING: [f32; 2] = [0.6, -0.63];
 /// Rounds of that, and rounds in which the directions of the band are averaged: it would widen every wave.
 const POSITION_ROUNDS: usize = 5;
 const DIRECTION_ROUNDS: usize = 20;
+/// Waves of the height along a hem that are kept: hems are sewn level.
+const HEM_HARMONICS: usize = 3;
 
 /// A band at one edge of a garment.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -51,7 +54,7 @@ pub fn sew_bands<'a>(garment: &SubdivisionSurface, band: impl Fn(&[u32]) -> Opti
     let normals = mesh.normals();
     for edge in garment.border_loops() {
         let Some(band) = band(&edge) else { continue };
-        let starts = edge_frames(&mesh, &normals, &edge);
+        let starts = edge_frames(&mesh, &normals, &edge, band);
         for (vertex, start) in edge.iter().zip(&starts) {
             mesh.positions[*vertex as usize] = start.position;
         }
@@ -71,8 +74,8 @@ impl Band<'_> {
     }
 }
 
-/// Returns the frames at the vertices of an edge, smoothed along it.
-fn edge_frames(mesh: &QuadMesh, normals: &[Vec3], edge: &[u32]) -> Vec<Frame> {
+/// Returns the frames of a band at the vertices of an edge, smoothed along it.
+fn edge_frames(mesh: &QuadMesh, normals: &[Vec3], edge: &[u32], band: Band) -> Vec<Frame> {
     let count = edge.len();
     let positions: Vec<Vec3> = edge.iter().map(|&v| mesh.positions[v as usize]).collect();
     let outs = (0..count).map(|i| {
@@ -86,7 +89,11 @@ fn edge_frames(mesh: &QuadMesh, normals: &[Vec3], edge: &[u32]) -> Vec<Frame> {
         let normal = normal.normalize_or_zero();
         Frame { position, normal, out: out.reject_from(normal).normalize_or_zero() }
     };
-    let positions = smoothed(positions, SMOOTHING.into_iter().cycle().take(2 * POSITION_ROUNDS));
+    let heights = low_pass(&positions, HEM_HARMONICS);
+    let mut positions = smoothed(positions, SMOOTHING.into_iter().cycle().take(2 * POSITION_ROUNDS));
+    if band == Band::Hem {
+        positions.iter_mut().zip(heights).for_each(|(position, level)| position.y = level.y);
+    }
     positions.into_iter().zip(normals).zip(outs).map(frame).collect()
 }
 
@@ -210,5 +217,19 @@ mod tests {
             }
         }
         assert!(mesh.parts.iter().all(|part| *part == 3));
+    }
+
+    #[test]
+    fn a_hem_is_level_where_the_edge_of_the_garment_is_wavy() {
+        const WAVES: u32 = 8;
+        let mut tube = tube();
+        let lower = tube.border_loops().into_iter().find(|edge| edge[0] == 0).unwrap();
+        for (index, &vertex) in (0_u32..).zip(&lower) {
+            let phase = TAU * (index * WAVES) as f32 / lower.len() as f32;
+            tube.mesh.positions[vertex as usize].y = 0.005 * phase.cos();
+        }
+        let hemmed = sew_bands(&tube, |edge| (edge[0] == 0).then_some(Band::Hem));
+        let highest = lower.iter().map(|&v| hemmed.mesh.positions[v as usize].y.abs()).fold(0.0, f32::max);
+        assert!(highest < 0.001, "{highest} m");
     }
 }

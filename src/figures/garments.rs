@@ -64,6 +64,7 @@ fn fitted(data: &BodyData, figure: &Figure, body: &PosedBody, garment: Garment, 
     let mut patch = Patch::new(data, group, positions, &inside).cut(&|v| field(v).min(body.above_cut(v)));
     if garment == Garment::Top {
         patch.fill_hollows(&|v| edges.spans_hollows(v, clothes));
+        patch.fair_edges(&|v| edges.nearness_to_close_edge(v, clothes.top) > 0.5);
     }
     let shins = shins(data, positions);
     patch.move_by(&|v, normal| {
@@ -136,6 +137,7 @@ fn shoulders(data: &BodyData, top: Top, positions: &[Vec3]) -> Patch {
 mod tests {
     use super::*;
     use crate::figures::READY;
+    use std::collections::BTreeSet;
 
     /// Returns the garments of the ready figures as they fit, subdivided once, each with a name and its figure.
     fn fitted_garments() -> impl Iterator<Item = (String, Figure, Garment, SubdivisionSurface)> {
@@ -201,6 +203,62 @@ mod tests {
     fn largest_turn_deg(ways: &[Vec3]) -> f32 {
         let pairs = ways.iter().zip(ways.iter().cycle().skip(1));
         pairs.map(|(a, b)| a.angle_between(*b).to_degrees()).fold(0.0, f32::max)
+    }
+
+    /// From the middle of the neckline in front the first quarter of its half width rises a third as much as the second
+    /// one, as on a parabola. The cut of the coarse mesh had a corner there, where both rise alike, or was level.
+    #[test]
+    fn necklines_of_the_ready_figures_are_round_in_front() {
+        let data = BodyData::shipped();
+        for ready in READY {
+            let figure = ready.figure();
+            let body = PosedBody::new(data, &figure);
+            // At rest a body looks along +Z
+            let top = SubdivisionSurface::new(fitted(data, &figure, &body, Garment::Top, &body.rest)).subdivided();
+            let lies_close = |edge: &Vec<u32>| edge.iter().all(|&v| top.mesh.values[v as usize].y > 0.5);
+            // The longest one: straps have armholes, too
+            let neckline = top.border_loops().into_iter().filter(lies_close).max_by_key(Vec::len).unwrap();
+            let points: Vec<Vec3> = neckline.iter().map(|&v| top.mesh.positions[v as usize]).collect();
+            let height_at = |x: f32| {
+                let ends = points.iter().zip(points.iter().cycle().skip(1));
+                let crossings = ends.filter(|(a, b)| (a.x > x) != (b.x > x));
+                let (a, b) = crossings.max_by(|(a, _), (b, _)| a.z.total_cmp(&b.z)).unwrap();
+                a.lerp(*b, (x - a.x) / (b.x - a.x)).y
+            };
+            let half_width = points.iter().map(|p| p.x).fold(0.0, f32::max);
+            let [middle, quarter, half] = [0.0, 0.25, 0.5].map(|part| height_at(part * half_width));
+            let ratio = (quarter - middle) / (half - quarter);
+            assert!((0.18..0.48).contains(&ratio), "{}: {ratio}", ready.name);
+        }
+    }
+
+    /// Trousers that stood out through the hem of a top made notches in it.
+    #[test]
+    fn tops_hang_outside_of_trousers() {
+        // The hem is turned under: its inside is some millimetres below its outside
+        const DEPTH_M: f32 = 0.003;
+        const NEAR_HEM_M: f32 = 0.05;
+        let data = BodyData::shipped();
+        let hangs = |figure: &Figure| figure.pose.seat_m.is_none() && !figure.bottom.hangs_from_waist();
+        for (name, figure) in READY.iter().map(|ready| (ready.name, ready.figure())).filter(|(_, f)| hangs(f)) {
+            let body = PosedBody::new(data, &figure);
+            let clothes = dress(data, &figure, &body, |garment| garment as u8).mesh;
+            let (positions, normals) = (&clothes.positions, clothes.normals());
+            let vertices = |wanted: Garment| -> BTreeSet<usize> {
+                let quads = clothes.quads.iter().zip(&clothes.parts).filter(|(_, part)| **part == wanted as u8);
+                quads.flat_map(|(quad, _)| quad.map(|v| v as usize)).collect()
+            };
+            let (top, bottom) = (vertices(Garment::Top), vertices(Garment::Bottom));
+            let lowest = top.iter().map(|&v| positions[v].y).fold(f32::MAX, f32::min);
+            let near_hem: Vec<usize> = top.into_iter().filter(|&v| positions[v].y < lowest + NEAR_HEM_M).collect();
+            let depth = |v: usize| {
+                let squared = |other: usize| positions[other].distance_squared(positions[v]);
+                let nearest = bottom.iter().copied().min_by(|a, b| squared(*a).total_cmp(&squared(*b))).unwrap();
+                (positions[nearest] - positions[v]).dot(normals[nearest])
+            };
+            let inside = near_hem.iter().filter(|&&v| depth(v) > DEPTH_M).count();
+            assert!(inside * 40 < near_hem.len(), "{name}: {inside} of {} vertices", near_hem.len());
+        }
     }
 
     /// The border of a cut mesh once ran back and forth, with normals turned inside out: hems had notches. The

@@ -19,6 +19,7 @@ mod cloth;
 mod cut;
 mod eyes;
 mod face;
+mod fairing;
 mod garments;
 mod gaze;
 mod hair;

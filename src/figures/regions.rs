@@ -307,9 +307,9 @@ impl Edges {
             }
             // Over the trousers
             (Garment::Top, Place::Trunk { height }) => {
-                tucked(0.001 + 0.006 * from_edge + 0.012 * (0.6 - height).clamp(0.0, 0.6))
+                tucked(0.001 + 0.006 * from_edge + 0.022 * (0.6 - height).clamp(0.0, 0.6))
             }
-            (Garment::Top, Place::Leg(_)) => tucked(0.014),
+            (Garment::Top, Place::Leg(_)) => tucked(0.02),
             // The waistband of a skirt is below the top
             (Garment::Bottom, _) if bottom.hangs_from_waist() => {
                 let below_edge_m = self.waist_height - self.positions[usize::from(vertex)].y;
