@@ -25,7 +25,7 @@ const SMOOTHING: [f32; 2] = [0.6, -0.63];
 /// Rounds of that, and rounds in which the directions of the band are averaged: it would widen every wave.
 const POSITION_ROUNDS: usize = 5;
 const DIRECTION_ROUNDS: usize = 20;
-/// Waves of the height along a hem that are kept: hems are sewn level.
+/// Harmonics of the height along a hem that are kept: hems are sewn level.
 const HEM_HARMONICS: usize = 3;
 
 /// A band at one edge of a garment.
@@ -89,12 +89,13 @@ fn edge_frames(mesh: &QuadMesh, normals: &[Vec3], edge: &[u32], band: Band) -> V
         let normal = normal.normalize_or_zero();
         Frame { position, normal, out: out.reject_from(normal).normalize_or_zero() }
     };
-    let heights = low_pass(&positions, HEM_HARMONICS);
-    let mut positions = smoothed(positions, SMOOTHING.into_iter().cycle().take(2 * POSITION_ROUNDS));
+    let factors = SMOOTHING.into_iter().cycle().take(2 * POSITION_ROUNDS);
+    let mut smooth = smoothed(positions.clone(), factors);
     if band == Band::Hem {
-        positions.iter_mut().zip(heights).for_each(|(position, level)| position.y = level.y);
+        let faired = low_pass(&positions, HEM_HARMONICS);
+        smooth.iter_mut().zip(faired).for_each(|(position, faired)| position.y = faired.y);
     }
-    positions.into_iter().zip(normals).zip(outs).map(frame).collect()
+    smooth.into_iter().zip(normals).zip(outs).map(frame).collect()
 }
 
 /// Returns vectors along a closed line after each was moved by these factors, in turns, towards the mean of its two

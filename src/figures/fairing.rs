@@ -1,4 +1,4 @@
-//! Fairs edges: takes the waves out of them that the cut of a coarse mesh and folds leave.
+//! Fairs edges of garments: removes the waves that the cut of a coarse mesh and folds leave, by a Fourier series.
 
 use super::patch::Patch;
 use super::subdivide::SubdivisionSurface;
@@ -6,18 +6,18 @@ use crate::math::find_interval;
 use glam::Vec3;
 use std::f32::consts::TAU;
 
-/// Waves along an edge of a patch that are kept: one and two to a round make a tilted and bent ellipse.
+/// Harmonics of an edge of a patch that are kept: the first is a tilted ellipse, which the second one bends.
 const PATCH_HARMONICS: usize = 2;
 /// Points at equal distances at which a line is sampled.
 const SAMPLES: usize = 128;
 
 impl Patch {
-    /// Moves the vertices of edges to smooth closed lines near them: of those edges most of whose vertices are wanted, by
-    /// their sources.
-    pub fn fair_edges(&mut self, wanted: &dyn Fn(u16) -> bool) {
+    /// Moves the vertices of edges to smooth closed lines. `is_wanted` tells, by their sources, which vertices are on such
+    /// an edge; those edges are faired most of whose vertices are.
+    pub fn fair_edges(&mut self, is_wanted: &dyn Fn(u16) -> bool) {
         let surface = SubdivisionSurface::new(self.clone().into_mesh(0, &|_| Vec3::ZERO));
         for edge in surface.border_loops() {
-            let count = edge.iter().filter(|&&v| wanted(self.sources[v as usize])).count();
+            let count = edge.iter().filter(|&&v| is_wanted(self.sources[v as usize])).count();
             if 2 * count > edge.len() {
                 let line: Vec<Vec3> = edge.iter().map(|&v| self.positions[v as usize]).collect();
                 for (&vertex, position) in edge.iter().zip(low_pass(&line, PATCH_HARMONICS)) {
@@ -28,7 +28,8 @@ impl Patch {
     }
 }
 
-/// Returns the points of a closed line moved to its Fourier series over its length, cut after so many harmonics.
+/// Returns the vertices of a closed line moved to its Fourier series over its length, cut after so many harmonics. The
+/// line must have a length.
 pub fn low_pass(line: &[Vec3], harmonics: usize) -> Vec<Vec3> {
     let ends = line.iter().zip(line.iter().cycle().skip(1));
     let lengths: Vec<f32> = ends.map(|(a, b)| a.distance(*b)).collect();

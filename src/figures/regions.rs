@@ -75,7 +75,8 @@ const SPAN_M: f32 = 0.24;
 /// metres: the skirt hugs the hips.
 const TUCK_M: f32 = 0.045;
 const TUCKED_IN_M: f32 = 0.015;
-/// Distance of a skirt from its helper mesh, and the length below its edge over which it comes that far within, metres.
+/// Distance of a skirt from its helper mesh, and the length of its waistband, at whose upper edge it is as far below that
+/// mesh, metres.
 const SKIRT_M: f32 = 0.006;
 const WAISTBAND_M: f32 = 0.06;
 /// Part of its distance from the body by which a top comes nearer where it lies on the shoulders.

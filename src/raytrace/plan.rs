@@ -335,7 +335,7 @@ mod tests {
             prepared.set_plan(plan);
         }
         let value = |seed| {
-            let settings = Settings { width: 24, height: 16, spp: 32, seed, ..Settings::default() };
+            let settings = Settings { width: 24, height: 16, spp: 64, seed, ..Settings::default() };
             let film = render(&prepared, &settings, &RenderControl::new(), &mut |_| ControlFlow::Continue(()));
             let picture = film.develop(scene);
             picture.rgb.iter().flatten().sum::<f32>() / (3 * picture.rgb.len()) as f32
